@@ -1,0 +1,1 @@
+"""Analysis: records to tables, heatmaps and reports; reads files only, starts no planner."""

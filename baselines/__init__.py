@@ -1,0 +1,1 @@
+"""Baselines: PDDL encodings and the planners of others behind our one protocol."""

@@ -1,0 +1,1 @@
+"""Planning with topple actions: the law, the SMASH gadget, its planners, and one executor."""

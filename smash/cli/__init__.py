@@ -1,0 +1,90 @@
+"""The `smash` command. Each subcommand is a module of its own, imported only when it is asked for."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from typing import NoReturn
+
+import click
+
+from smash.problem.errors import SmashError
+
+COMMANDS: dict[str, tuple[str, str]] = {
+    "generate": ("smash.cli.generate", "make random benchmark instances (single-goal, multi-goal)"),
+    "plan": ("smash.cli.plan", "plan one instance and print or write the plan"),
+    "validate": ("smash.cli.validate", "judge a plan by the law"),
+    "planners": ("smash.cli.planners", "list the planners, what they support and what is missing"),
+}
+"""Subcommand -> (module that holds a click command called `command`, one line of help)."""
+
+
+class LazyGroup(click.Group):
+    """A click group that imports a subcommand's module only when that subcommand runs."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the subcommands, in the order of `COMMANDS`."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import and return one subcommand, or None where there is no such command."""
+        if cmd_name not in COMMANDS:
+            return None
+        command: click.Command = importlib.import_module(COMMANDS[cmd_name][0]).command
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the list of subcommands from `COMMANDS`, importing none of them."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, text) for name, (_, text) in COMMANDS.items()])
+
+
+@click.group(
+    cls=LazyGroup,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    epilog="Exit codes: 0 done; 2 malformed file or flags; 3 proven infeasible, or a plan that the law refuses; "
+    "4 budget spent without a plan; 5 execution failed; 6 unsupported or not installed; "
+    "7 the planner crashed or hit its memory limit; 130 interrupted.",
+)
+@click.version_option(package_name="smash-testbed", prog_name="smash")
+def smash() -> None:
+    r"""Compare planners that may topple stacks of blocks with planners that only pick and place.
+
+    \b
+    Examples:
+      smash generate multi --blocks 9 --buffers 12 --count 20 --seed 1 --out my-set
+      smash plan my-set/multi-9-000.json --planner smash --out plan.json
+      smash validate my-set/multi-9-000.json plan.json
+    """
+
+
+def fail(message: str, code: int) -> NoReturn:
+    """Print one line on stderr and end with `code`."""
+    print("smash: " + " ".join(message.split()), file=sys.stderr)
+    sys.stdout.flush()
+    sys.exit(code)
+
+
+def main() -> NoReturn:
+    """Run the command: errors are one line on stderr and an exit code, never a traceback."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+    try:
+        code = smash.main(standalone_mode=False, prog_name="smash")
+        sys.stdout.flush()
+    except SmashError as error:
+        fail(str(error), error.exit_code)
+    except click.exceptions.Abort:
+        fail("interrupted", 130)
+    except click.exceptions.Exit as ended:
+        sys.exit(ended.exit_code)
+    except click.ClickException as error:
+        fail(error.format_message(), 2)
+    except KeyboardInterrupt:
+        fail("interrupted", 130)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(141)
+    sys.exit(code if isinstance(code, int) else 0)

@@ -1,0 +1,34 @@
+"""`smash generate single|multi`: random instances of the paper's two benchmarks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from smash.problem.files import write_instance
+from smash.problem.generators import BENCHMARKS, generate
+
+
+@click.command("generate")
+@click.argument("benchmark", type=click.Choice(sorted(BENCHMARKS)))
+@click.option("--blocks", type=click.IntRange(min=3), required=True, metavar="N", help="Blocks (3 or more).")
+@click.option("--buffers", type=click.IntRange(min=0), default=12, show_default=True, metavar="B", help="Buffers.")
+@click.option("--count", type=click.IntRange(min=1), default=1, show_default=True, metavar="K", help="Instances.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, metavar="S", help="Random seed.")
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), required=True, help="Directory to write to.")
+def command(benchmark: str, blocks: int, buffers: int, count: int, seed: int, out: Path) -> None:
+    r"""Make random instances of a benchmark of the paper; the same seed gives the same files.
+
+    \b
+    single  one target block must reach height 1 of an empty fourth location
+    multi   all blocks have a place in the goal, on the same three locations
+
+    \b
+    Example:
+      smash generate multi --blocks 9 --buffers 12 --count 20 --seed 1 --out my-set
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    for instance in generate(benchmark, blocks, buffers, count, seed):
+        write_instance(instance, out / f"{instance.name}.json")
+    click.echo(f"{count} instance{'s' if count > 1 else ''} in {out}")

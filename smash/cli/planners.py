@@ -1,0 +1,31 @@
+"""`smash planners`: what there is to plan with."""
+
+from __future__ import annotations
+
+import click
+
+from smash.planners.registry import get_planner, planner_names
+from smash.problem.errors import Unsupported
+
+
+@click.command("planners")
+def command() -> None:
+    """List the planners: what each is, whether it is anytime and proves optima, what is missing."""
+    rows = []
+    for name in planner_names():
+        try:
+            planner = get_planner(name)
+        except Unsupported as error:
+            rows.append((name, "-", "-", str(error).split(": ", 1)[-1]))
+            continue
+        rows.append(
+            (
+                name,
+                "anytime" if getattr(planner, "anytime", False) else "one plan",
+                "proves" if getattr(planner, "proves", False) else "-",
+                getattr(planner, "summary", ""),
+            )
+        )
+    widths = [max(len(row[column]) for row in rows) for column in range(3)]
+    for row in rows:
+        click.echo("  ".join([*(cell.ljust(width) for cell, width in zip(row, widths, strict=False)), row[3]]))

@@ -1,0 +1,28 @@
+"""`smash validate INSTANCE PLAN`: the law's verdict on a filed plan."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from smash.cli import fail
+from smash.problem.files import read_instance, read_plan
+from smash.problem.plan import check_plan
+
+
+@click.command("validate")
+@click.argument("instance", type=click.Path(path_type=Path))
+@click.argument("plan", type=click.Path(path_type=Path))
+def command(instance: Path, plan: Path) -> None:
+    r"""Judge a plan by the law: exit 0 where it is accepted, 3 where it is refused (with the step and the reason).
+
+    \b
+    Example:
+      smash validate examples/figure1.json plan.json
+    """
+    filed = read_plan(plan)
+    verdict = check_plan(read_instance(instance), filed)
+    if not verdict.accepted:
+        fail(f"{plan}: {verdict}", 3)
+    click.echo(f"accepted: {filed.cost} actions")

@@ -1,0 +1,1 @@
+"""One executor: Franka Panda in PyBullet, OMPL motions, partially grounded execution."""

@@ -1,0 +1,1 @@
+"""Experiments: files, isolated runs with limits, sweeps that resume, records."""

@@ -1,0 +1,176 @@
+"""What a planner is: one object with `solve(instance, options, budget, on_incumbent) -> PlanResult`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import Any, ClassVar, Literal, Protocol, runtime_checkable
+
+from smash.problem.model import Action, Instance, PlanOptions
+from smash.problem.plan import Incumbent, Plan, Status
+from smash.problem.rules import Law
+
+OnIncumbent = Callable[[float, int, Sequence[Action]], None]
+"""`on_incumbent(seconds, cost, actions)`: called at once with every better plan; seconds since the call of `solve`."""
+
+
+@dataclass(frozen=True, slots=True)
+class SolveOptions(PlanOptions):
+    """The law's plan options, and the settings of a solve that a planner may use.
+
+    `warm_start` names the planner whose plan starts a model (None: cold); `horizon` overrides the number of
+    time steps or layers of the time-indexed models; `threads` bounds the solver's threads; `seed` is for
+    whatever draws at random.
+    """
+
+    warm_start: str | None = None
+    horizon: int | None = None
+    threads: int = 1
+    seed: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class PlanResult:
+    """A planner's answer. `details` holds what only this planner measures (model size, translation seconds)."""
+
+    status: Status
+    actions: tuple[Action, ...] | None = None
+    lower_bound: int | None = None
+    bound_origin: str | None = None
+    incumbents: tuple[Incumbent, ...] = ()
+    details: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def cost(self) -> int | None:
+        """The plan's cost: its length."""
+        return None if self.actions is None else len(self.actions)
+
+    def as_plan(self, instance: Instance, planner: str, options: PlanOptions) -> Plan:
+        """Return the filed form."""
+        return Plan(
+            instance=instance.name,
+            planner=planner,
+            options=PlanOptions(options.topple, options.max_topple),
+            status=self.status,
+            actions=self.actions,
+            lower_bound=self.lower_bound,
+            bound_origin=self.bound_origin,
+            incumbents=self.incumbents,
+        )
+
+
+Support = Literal["yes", "no"]
+
+
+@runtime_checkable
+class Planner(Protocol):
+    """A planner. Third parties add one by the `smash.planners` entry-point group; only `solve` is required.
+
+    A planner may also define, and the testbed then uses:
+
+    - `summary: str`, one line for `smash planners`;
+    - `unsupported(instance, options) -> str | None`, the reason why it cannot take this problem, asked before it starts;
+    - `anytime: bool`, whether it improves a first plan until the budget ends (its incumbents then stand for
+      every smaller budget);
+    - `proves: bool`, whether it can report `optimal`;
+    - `missing() -> str | None`, what is not installed that it needs.
+    """
+
+    def solve(
+        self,
+        instance: Instance,
+        options: SolveOptions,
+        budget: float,
+        on_incumbent: OnIncumbent | None = None,
+    ) -> PlanResult:
+        """Plan for at most `budget` seconds of wall time."""
+        ...
+
+
+class BasePlanner:
+    """Defaults for the optional parts of the protocol."""
+
+    summary: ClassVar[str] = ""
+    anytime: ClassVar[bool] = True
+    proves: ClassVar[bool] = False
+
+    def unsupported(self, instance: Instance, options: SolveOptions) -> str | None:
+        """Return why this planner cannot take the problem, or None."""
+        return None
+
+    def missing(self) -> str | None:
+        """Return what is not installed that this planner needs, or None."""
+        return None
+
+
+class IncumbentLog:
+    """Collects strictly better plans with their times, checks each by the law, and passes it on at once.
+
+    One log a solve: make it first, so that its clock counts build and translation too.
+    """
+
+    def __init__(self, instance: Instance, options: PlanOptions, on_incumbent: OnIncumbent | None = None) -> None:
+        self._started = perf_counter()
+        self._law = Law(instance, options)
+        self._report = on_incumbent
+        self.entries: list[Incumbent] = []
+        self.best: tuple[Action, ...] | None = None
+        self.refusals: list[str] = []
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds since the log was made."""
+        return perf_counter() - self._started
+
+    @property
+    def cost(self) -> int | None:
+        """Cost of the best plan so far, or None."""
+        return None if self.best is None else len(self.best)
+
+    def offer(self, actions: Sequence[Action], origin: str, seconds: float | None = None) -> bool:
+        """Take a plan if it is legal and better than the best; report it at once.
+
+        Args:
+            actions: the plan.
+            origin: what found it (`greedy`, `milp`, `exact`, the engine).
+            seconds: when it was found, since the start of the solve; now, where None.
+
+        Returns:
+            Whether it became the best plan. A plan that the law refuses goes to `refusals`.
+        """
+        if self.best is not None and len(actions) >= len(self.best):
+            return False
+        verdict = self._law.check(actions)
+        if not verdict.accepted:
+            self.refusals.append(f"{origin}: {verdict}")
+            return False
+        self.best = tuple(actions)
+        at = self.elapsed if seconds is None else seconds
+        self.entries.append(Incumbent(at, len(self.best), origin))
+        if self._report is not None:
+            self._report(at, len(self.best), self.best)
+        return True
+
+    def result(
+        self,
+        *,
+        lower_bound: int | None = None,
+        bound_origin: str | None = None,
+        infeasible: bool = False,
+        details: Mapping[str, Any] | None = None,
+    ) -> PlanResult:
+        """Return the result: `optimal` where the bound meets the best cost, `infeasible` only where that is proven."""
+        status: Status
+        if self.best is not None:
+            status = "optimal" if lower_bound is not None and lower_bound >= len(self.best) else "feasible"
+        else:
+            status = "infeasible" if infeasible else "unknown"
+        return PlanResult(
+            status=status,
+            actions=self.best,
+            lower_bound=lower_bound,
+            bound_origin=bound_origin if lower_bound is not None or infeasible else None,
+            incumbents=tuple(self.entries),
+            details=details or {},
+        )

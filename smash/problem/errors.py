@@ -1,0 +1,36 @@
+"""The one family of errors that a user can cause; each message is one line: what, where, what is allowed."""
+
+from __future__ import annotations
+
+
+class SmashError(Exception):
+    """Base of all errors that end in one clear line on stderr and an exit code."""
+
+    exit_code = 2
+
+
+class MalformedFile(SmashError):
+    """A file that is not what its format says."""
+
+    def __init__(self, where: str, problem: str) -> None:
+        self.where = where
+        self.problem = problem
+        super().__init__(f"{where}: {problem}")
+
+
+class IllegalAction(SmashError):
+    """An action that the law does not allow in the state at hand."""
+
+    exit_code = 3
+
+
+class Unsupported(SmashError):
+    """A planner was asked for what it says it cannot do, or its engine is not installed."""
+
+    exit_code = 6
+
+
+class PlannerCrashed(SmashError):
+    """A planner ended abnormally or hit its memory limit."""
+
+    exit_code = 7

@@ -1,0 +1,149 @@
+"""Instances, goals, actions and states of tabletop stack rearrangement (paper, section "Problem Formulation").
+
+Heights are 1-based: 1 is the bottom. A *location* is a stack location; `stacks` are those that start and
+goal use, `buffers` are interchangeable auxiliary ones. The *table region* is the paper's T_a: the place of
+toppled blocks, whose poses are unknown to the planner.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass, field
+
+TABLE = "table"
+"""The source name of a pick from the table region; no location may be called so."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pick:
+    """Take `block` from the top of location `source`, or from the table region (`source == TABLE`)."""
+
+    block: str
+    source: str
+
+    def __str__(self) -> str:
+        return f"pick {self.block!r} from {self.source!r}"
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Put the held `block` on top of location `target`."""
+
+    block: str
+    target: str
+
+    def __str__(self) -> str:
+        return f"place {self.block!r} on {self.target!r}"
+
+
+@dataclass(frozen=True, slots=True)
+class Topple:
+    """Push every block at `height` and above of `location` into the table region, in one action."""
+
+    location: str
+    height: int
+
+    def __str__(self) -> str:
+        return f"topple {self.location!r} from height {self.height}"
+
+
+Action = Pick | Place | Topple
+
+
+@dataclass(frozen=True, slots=True)
+class StacksGoal:
+    """The whole arrangement: each location holds exactly this list, bottom first; all else is empty."""
+
+    stacks: Mapping[str, tuple[str, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class PositionsGoal:
+    """Some blocks at an exact (location, height); per location the heights 1..k. The rest lies anywhere."""
+
+    positions: Mapping[str, tuple[str, int]]
+
+    def stacks(self) -> dict[str, tuple[str, ...]]:
+        """Return the listed blocks per location, bottom first; locations without one are left out."""
+        piles: dict[str, list[tuple[int, str]]] = {}
+        for block, (location, height) in self.positions.items():
+            piles.setdefault(location, []).append((height, block))
+        return {location: tuple(block for _, block in sorted(pile)) for location, pile in piles.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class OnGoal:
+    """Relations only: `on[a] == b` wants a directly on b; each of `bottom` at the bottom of some location."""
+
+    on: Mapping[str, str]
+    bottom: tuple[str, ...] = ()
+
+    def towers(self) -> list[tuple[str, ...]]:
+        """Return the goal's towers, bottom first; a block of `bottom` that carries nothing is one of height 1."""
+        above = {under: upper for upper, under in self.on.items()}
+        bases = [b for b in above if b not in self.on] + [b for b in self.bottom if b not in above]
+        towers = []
+        for base in bases:
+            tower = [base]
+            while tower[-1] in above:
+                tower.append(above[tower[-1]])
+            towers.append(tuple(tower))
+        return towers
+
+
+Goal = StacksGoal | PositionsGoal | OnGoal
+
+
+@dataclass(frozen=True, slots=True)
+class Instance:
+    """One rearrangement problem. `start` names every location (empty ones too), bottom first.
+
+    Build it by `smash.problem.files` or `make_instance`, which check it; the fields are then trusted.
+    """
+
+    name: str
+    blocks: tuple[str, ...]
+    stacks: tuple[str, ...]
+    buffers: tuple[str, ...]
+    start: Mapping[str, tuple[str, ...]]
+    goal: Goal
+    table: tuple[str, ...] = ()
+
+    @property
+    def locations(self) -> tuple[str, ...]:
+        """All stack locations: `stacks`, then `buffers`."""
+        return self.stacks + self.buffers
+
+
+@dataclass(frozen=True, slots=True)
+class PlanOptions:
+    """What a plan may use: whether `topple` is allowed, and the cap `max_topple` on the blocks of one."""
+
+    topple: bool = True
+    max_topple: int | None = None
+
+
+@dataclass(slots=True)
+class State:
+    """Where every block is: `piles` per location (bottom first), `table` (the paper's T_a), `hand`.
+
+    Mutable, so that a plan of any length is checked in time linear in its length; `copy` before you branch.
+    """
+
+    piles: dict[str, list[str]]
+    table: set[str] = field(default_factory=set)
+    hand: str | None = None
+
+    @classmethod
+    def start_of(cls, instance: Instance) -> State:
+        """Return the start state of `instance`."""
+        piles = {location: list(instance.start.get(location, ())) for location in instance.locations}
+        return cls(piles, set(instance.table))
+
+    def copy(self) -> State:
+        """Return an independent copy."""
+        return State({location: list(pile) for location, pile in self.piles.items()}, set(self.table), self.hand)
+
+    def key(self) -> Hashable:
+        """Return a hashable value that is equal for equal states."""
+        return tuple((k, tuple(v)) for k, v in sorted(self.piles.items())), frozenset(self.table), self.hand

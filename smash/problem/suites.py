@@ -1,0 +1,60 @@
+"""Instance sets: the committed ones by name, any directory of instance files by its path."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from smash.problem.errors import MalformedFile
+from smash.problem.files import read_instance
+from smash.problem.generators import generate
+from smash.problem.model import Instance
+
+SUITES = Path(__file__).parent / "suites"
+SUITE_SEED = 2026
+SUITE_BUFFERS = 12
+SUITE_COUNT = 20
+PAPER_SUITES = {f"{kind}-{size}": (kind, size) for kind in ("single", "multi") for size in (4, 6, 9)}
+"""The committed benchmark sets: name -> (benchmark, blocks); 20 instances with 12 buffers each."""
+
+
+def suite_names() -> list[str]:
+    """Return the names of the committed sets."""
+    return sorted(path.name for path in SUITES.iterdir() if path.is_dir())
+
+
+def suite_files(suite: str) -> list[Path]:
+    """Return the instance files of a committed set or of a directory, sorted by name.
+
+    Raises:
+        MalformedFile: where it is neither, or holds no instance file.
+    """
+    directory = SUITES / suite if suite in suite_names() else Path(suite)
+    if not directory.is_dir():
+        known = ", ".join(suite_names())
+        raise MalformedFile(suite, f"neither a directory of instance files nor a committed set ({known})")
+    files = sorted(directory.glob("*.json"))
+    if not files:
+        raise MalformedFile(suite, "the directory holds no instance file (*.json)")
+    return files
+
+
+def read_suite(suite: str) -> list[Instance]:
+    """Read all instances of a set.
+
+    Raises:
+        MalformedFile: where one of them is refused, or two have the same name.
+    """
+    instances: dict[str, Instance] = {}
+    for file in suite_files(suite):
+        instance = read_instance(file)
+        if instance.name in instances:
+            raise MalformedFile(str(file), f"`name`: {instance.name!r} stands twice in the set")
+        instances[instance.name] = instance
+    return list(instances.values())
+
+
+def paper_suite(name: str) -> Iterator[Instance]:
+    """Generate the instances of a committed benchmark set anew."""
+    kind, size = PAPER_SUITES[name]
+    return generate(kind, size, SUITE_BUFFERS, SUITE_COUNT, SUITE_SEED)
