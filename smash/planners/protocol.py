@@ -70,7 +70,7 @@ class Planner(Protocol):
     A planner may also define, and the testbed then uses:
 
     - `summary: str`, one line for `smash planners`;
-    - `unsupported(instance, options) -> str | None`, the reason why it cannot take this problem, asked before it starts;
+    - `unsupported(instance, options) -> str | None`, why it cannot take this problem, asked before it starts;
     - `anytime: bool`, whether it improves a first plan until the budget ends (its incumbents then stand for
       every smaller budget);
     - `proves: bool`, whether it can report `optimal`;
