@@ -42,14 +42,14 @@ class LazyGroup(click.Group):
 
 @click.group(
     cls=LazyGroup,
-    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100, "show_default": True},
     epilog="Exit codes: 0 done; 2 malformed file or flags; 3 proven infeasible, or a plan that the law refuses; "
     "4 budget spent without a plan; 5 execution failed; 6 unsupported or not installed; "
     "7 the planner crashed or hit its memory limit; 130 interrupted.",
 )
 @click.version_option(package_name="smash-testbed", prog_name="smash")
 def smash() -> None:
-    r"""Compare planners that may topple stacks of blocks with planners that only pick and place.
+    """Compare planners that may topple stacks of blocks with planners that only pick and place.
 
     \b
     Examples:
@@ -76,6 +76,9 @@ def main() -> NoReturn:
         sys.stdout.flush()
     except SmashError as error:
         fail(str(error), error.exit_code)
+    except click.exceptions.NoArgsIsHelpError as asked:
+        print(asked.format_message())
+        sys.exit(0)
     except click.exceptions.Abort:
         fail("interrupted", 130)
     except click.exceptions.Exit as ended:

@@ -18,7 +18,7 @@ from smash.problem.generators import BENCHMARKS, generate
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, metavar="S", help="Random seed.")
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), required=True, help="Directory to write to.")
 def command(benchmark: str, blocks: int, buffers: int, count: int, seed: int, out: Path) -> None:
-    r"""Make random instances of a benchmark of the paper; the same seed gives the same files.
+    """Make random instances of a benchmark of the paper; the same seed gives the same files.
 
     \b
     single  one target block must reach height 1 of an empty fourth location

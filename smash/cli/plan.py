@@ -43,7 +43,7 @@ def command(
     threads: int,
     out: Path | None,
 ) -> None:
-    r"""Plan INSTANCE and print the plan as JSON, or write it with --out.
+    """Plan INSTANCE and print the plan as JSON, or write it with --out.
 
     \b
     Examples:

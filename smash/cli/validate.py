@@ -15,7 +15,7 @@ from smash.problem.plan import check_plan
 @click.argument("instance", type=click.Path(path_type=Path))
 @click.argument("plan", type=click.Path(path_type=Path))
 def command(instance: Path, plan: Path) -> None:
-    r"""Judge a plan by the law: exit 0 where it is accepted, 3 where it is refused (with the step and the reason).
+    """Judge a plan by the law: exit 0 where it is accepted, 3 where it is refused (with the step and the reason).
 
     \b
     Example:

@@ -32,6 +32,12 @@ from smash.problem.plan import STATUSES, Incumbent, Plan, Status
 
 INSTANCE_FORMAT = "smash-instance/1"
 PLAN_FORMAT = "smash-plan/1"
+GOAL_KEYS = {
+    "stacks": ("kind", "stacks"),
+    "positions": ("kind", "positions"),
+    "on": ("kind", "on", "bottom"),
+}
+"""Goal kind -> the keys of its object."""
 
 
 class _StacksGoalFile(msgspec.Struct, forbid_unknown_fields=True, tag_field="kind", tag="stacks"):
@@ -133,14 +139,32 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
 
 
 def convert(document: Any, kind: Any, where: str) -> Any:
-    """Check a parsed document against a msgspec type; one-line `MalformedFile` where it does not fit."""
+    """Check a parsed document against a msgspec type; one-line `MalformedFile` where it does not fit.
+
+    Raises:
+        MalformedFile: with the place and, for an unknown key, the allowed ones.
+    """
     try:
         return msgspec.convert(document, kind)
     except msgspec.ValidationError as error:
-        message = (
-            str(error).replace("`$.", "`").replace("Object contains", "").replace("Object missing", "missing").strip()
-        )
+        message = str(error).replace("`$.", "`").removeprefix("Object contains ")
+        message = message.replace("Object missing", "missing")
+        if message.startswith("unknown field") and " - at " not in message:
+            message += f"; allowed: {', '.join(field.name for field in msgspec.structs.fields(kind))}"
         raise MalformedFile(where, message) from None
+
+
+def check_format(document: Any, wanted: str, where: str) -> None:
+    """Refuse a document that does not say the wanted `format`.
+
+    Raises:
+        MalformedFile: where it says another one or none.
+    """
+    if not isinstance(document, dict):
+        raise MalformedFile(where, f"not a JSON object; a {wanted} file is one")
+    found = document.get("format")
+    if found != wanted:
+        raise MalformedFile(where, f"`format`: {found!r} is not allowed; {wanted!r} is")
 
 
 def read_instance(path: str | os.PathLike[str]) -> Instance:
@@ -159,6 +183,8 @@ def instance_from_document(document: Any, where: str = "instance") -> Instance:
     Raises:
         MalformedFile: with one line that says where and what is allowed.
     """
+    check_format(document, INSTANCE_FORMAT, where)
+    _check_goal_keys(document.get("goal"), where)
     file = cast(_InstanceFile, convert(document, _InstanceFile, where))
     match file.goal:
         case _StacksGoalFile(stacks=stacks):
@@ -177,6 +203,18 @@ def instance_from_document(document: Any, where: str = "instance") -> Instance:
         table=file.table,
         where=where,
     )
+
+
+def _check_goal_keys(goal: Any, where: str) -> None:
+    """Refuse an unknown goal kind or key, naming the allowed ones (msgspec names none)."""
+    if not isinstance(goal, dict):
+        return
+    kind = goal.get("kind")
+    if not isinstance(kind, str) or kind not in GOAL_KEYS:
+        raise MalformedFile(where, f"`goal.kind`: {kind!r} is not allowed; one of {', '.join(GOAL_KEYS)}")
+    for key in goal:
+        if key not in GOAL_KEYS[kind]:
+            raise MalformedFile(where, f"`goal`: unknown key {key!r}; allowed: {', '.join(GOAL_KEYS[kind])}")
 
 
 def make_instance(
@@ -407,6 +445,7 @@ def plan_from_document(document: Any, where: str = "plan") -> Plan:
     Raises:
         MalformedFile: with one line that says where and what is allowed.
     """
+    check_format(document, PLAN_FORMAT, where)
     file = cast(_PlanFile, convert(document, _PlanFile, where))
     if file.status not in STATUSES:
         raise MalformedFile(where, f"`status`: {file.status!r} is not one of {', '.join(STATUSES)}")
