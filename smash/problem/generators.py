@@ -7,8 +7,9 @@ so that instance k does not depend on how many are drawn.
 
 from __future__ import annotations
 
+import itertools
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from smash.problem.files import make_instance
 from smash.problem.model import Instance, PositionsGoal, StacksGoal
@@ -22,9 +23,17 @@ def draw_arrangement(blocks: tuple[str, ...], draw: random.Random) -> dict[str, 
     """Return a uniform permutation of `blocks` cut into three non-empty stacks at uniform places."""
     order = list(blocks)
     draw.shuffle(order)
-    first, second = sorted(draw.sample(range(1, len(order)), 2))
-    parts = (order[:first], order[first:second], order[second:])
-    return {stack: tuple(part) for stack, part in zip(STACKS, parts, strict=True)}
+    return {stack: tuple(part) for stack, part in zip(STACKS, cut(order, len(STACKS), draw), strict=True)}
+
+
+def cut(order: Sequence[str], parts: int, draw: random.Random) -> list[list[str]]:
+    """Cut a sequence into `parts` non-empty pieces at uniform places.
+
+    Raises:
+        ValueError: where the sequence is shorter than `parts`.
+    """
+    places = [0, *sorted(draw.sample(range(1, len(order)), parts - 1)), len(order)]
+    return [list(order[start:end]) for start, end in itertools.pairwise(places)]
 
 
 def single_goal(name: str, blocks: int, buffers: int, draw: random.Random) -> Instance:

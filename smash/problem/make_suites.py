@@ -1,17 +1,17 @@
-"""`python -m smash.problem.make_suites`: write the committed benchmark sets again, byte for byte."""
+"""`python -m smash.problem.make_suites`: write the committed sets again, byte for byte."""
 
 from __future__ import annotations
 
 from smash.problem.files import write_instance
-from smash.problem.suites import PAPER_SUITES, SUITES, paper_suite
+from smash.problem.suites import SUITES, generated_names, made_again
 
 
 def main() -> None:
-    """Write every committed benchmark set."""
-    for name in PAPER_SUITES:
+    """Write every committed set."""
+    for name in generated_names():
         directory = SUITES / name
         directory.mkdir(parents=True, exist_ok=True)
-        for instance in paper_suite(name):
+        for instance in made_again(name):
             write_instance(instance, directory / f"{instance.name}.json")
 
 

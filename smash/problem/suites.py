@@ -9,6 +9,7 @@ from smash.problem.errors import MalformedFile
 from smash.problem.files import read_instance
 from smash.problem.generators import generate
 from smash.problem.model import Instance
+from smash.problem.open_instances import FAMILIES, open_set
 
 SUITES = Path(__file__).parent / "suites"
 SUITE_SEED = 2026
@@ -54,7 +55,18 @@ def read_suite(suite: str) -> list[Instance]:
     return list(instances.values())
 
 
-def paper_suite(name: str) -> Iterator[Instance]:
-    """Generate the instances of a committed benchmark set anew."""
+def generated_names() -> list[str]:
+    """Return the names of the committed sets that `made_again` makes."""
+    return [*PAPER_SUITES, *FAMILIES]
+
+
+def made_again(name: str) -> Iterator[Instance]:
+    """Generate the instances of a committed set anew.
+
+    Raises:
+        KeyError: where no generated set is called so.
+    """
+    if name in FAMILIES:
+        return open_set(name, SUITE_SEED)
     kind, size = PAPER_SUITES[name]
     return generate(kind, size, SUITE_BUFFERS, SUITE_COUNT, SUITE_SEED)
