@@ -1,1 +1,20 @@
-"""The gadgets: pick-and-place and SMASH as typed graphs, their drawing, and plans as pebble motions."""
+"""The gadget: the typed graph on which objects move as pebbles (paper, section "Method")."""
+
+from smash.gadget.graph import Aggregate, Edge, EdgeKind, Gadget, GadgetBuilder, Node, NodeKey, NodeKind
+from smash.gadget.library import gadget_of, pick_and_place_gadget, smash_gadget
+from smash.gadget.parts import AggregatingPart
+
+__all__ = [
+    "Aggregate",
+    "AggregatingPart",
+    "Edge",
+    "EdgeKind",
+    "Gadget",
+    "GadgetBuilder",
+    "Node",
+    "NodeKey",
+    "NodeKind",
+    "gadget_of",
+    "pick_and_place_gadget",
+    "smash_gadget",
+]
