@@ -1,0 +1,73 @@
+"""Which problems have a plan: the rule agrees with exhaustive search wherever that can look."""
+
+import itertools
+import random
+
+import pytest
+from hypothesis import given, settings
+
+from smash.problem import OnGoal, PlanOptions, PositionsGoal, StacksGoal, make_instance
+from smash.problem.feasibility import why_infeasible
+from tests.oracle import optimal_cost
+from tests.strategies import instances, plan_options
+
+NO_TOPPLE = PlanOptions(topple=False)
+
+
+def agree(instance, options):
+    assert (why_infeasible(instance, options) is None) == (optimal_cost(instance, options) is not None)
+
+
+@settings(max_examples=150, deadline=None)
+@given(instances(max_blocks=4), plan_options())
+def test_the_rule_agrees_with_exhaustive_search(instance, options):
+    agree(instance, options)
+
+
+@settings(max_examples=300, deadline=None)
+@given(instances(max_blocks=5, max_stacks=2, max_buffers=0))
+def test_the_rule_agrees_without_topple_on_one_and_two_locations(instance):
+    agree(instance, NO_TOPPLE)
+
+
+def random_relations(seed):
+    """Draw an `on` goal with any number of bottoms on one or two locations, many blocks on the table."""
+    draw = random.Random(seed)
+    blocks = [f"b{number}" for number in range(draw.randint(0, 5))]
+    draw.shuffle(blocks)
+    locations = ["s1", "s2"][: draw.randint(1, 2)]
+    places = {block: draw.choice([*locations, *locations, None]) for block in blocks}
+    start = {location: [b for b in blocks if places[b] == location] for location in locations}
+    table = [b for b in blocks if places[b] is None]
+    draw.shuffle(blocks)
+    on = {upper: under for under, upper in itertools.pairwise(blocks) if draw.random() < 0.45}
+    bottom = [b for b in blocks if b not in on and draw.random() < 0.5]
+    return make_instance(
+        name="drawn", blocks=blocks, stacks=locations, start=start, table=table, goal=OnGoal(on, tuple(bottom))
+    )
+
+
+@pytest.mark.parametrize("topple", [True, False])
+def test_relations_with_any_number_of_bottoms_agree_with_exhaustive_search(topple):
+    for seed in range(400):
+        agree(random_relations(seed), PlanOptions(topple=topple, max_topple=1 if topple else None))
+
+
+def test_two_locations_without_topple_keep_their_line():
+    def problem(goal):
+        return make_instance(name="x", blocks="abc", stacks=["s1", "s2"], start={"s1": "ab", "s2": "c"}, goal=goal)
+
+    assert why_infeasible(problem(StacksGoal({"s2": tuple("cba")})), NO_TOPPLE) is None
+    swapped = problem(StacksGoal({"s1": tuple("ba"), "s2": ("c",)}))
+    assert "two locations" in why_infeasible(swapped, NO_TOPPLE)
+    assert why_infeasible(swapped, PlanOptions()) is None
+
+
+def test_more_bottoms_than_locations_is_infeasible_even_with_topple():
+    instance = make_instance(name="x", blocks="ab", stacks=["s1"], start={"s1": "ab"}, goal=OnGoal({}, ("a", "b")))
+    assert "there are 1 locations" in why_infeasible(instance, PlanOptions())
+
+
+def test_nothing_to_do_is_feasible():
+    for goal in (StacksGoal({}), PositionsGoal({}), OnGoal({})):
+        assert why_infeasible(make_instance(name="x", blocks=[], stacks=["s1"], start={}, goal=goal), NO_TOPPLE) is None
