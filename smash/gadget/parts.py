@@ -29,3 +29,7 @@ class AggregatingPart(Protocol):
     def action(self, location: str, blocks: Collection[str], state: State) -> Action:
         """Return the action that moves `blocks` at once from `location`, in the state before it."""
         ...
+
+    def gathered(self, action: Action, state: State) -> tuple[str, tuple[str, ...]] | None:
+        """Return the location and the blocks that `action` moves at once, topmost first; None: not this part's."""
+        ...

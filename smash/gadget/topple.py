@@ -6,7 +6,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from smash.gadget.graph import Aggregate, EdgeKind, GadgetBuilder, NodeKind
-from smash.problem.model import State, Topple
+from smash.problem.model import Action, State, Topple
 
 NAME = "topple"
 
@@ -52,3 +52,9 @@ class TopplePart:
     def action(self, location: str, blocks: Collection[str], state: State) -> Topple:
         """Return the topple that brings `blocks`, the topmost ones of `location`, down."""
         return Topple(location, len(state.piles[location]) - len(blocks) + 1)
+
+    def gathered(self, action: Action, state: State) -> tuple[str, tuple[str, ...]] | None:
+        """Return the blocks that a topple brings down, topmost first."""
+        if not isinstance(action, Topple):
+            return None
+        return action.location, tuple(reversed(state.piles[action.location][action.height - 1 :]))
