@@ -1,0 +1,129 @@
+"""The greedy planner: a feasible plan at any size, wherever one exists, and better ones by a few more passes."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Sequence
+from time import perf_counter
+from typing import ClassVar
+
+from smash.planners.construct import NEVER, Construction
+from smash.planners.indexed import Indexed, Step, cost_of
+from smash.planners.line import line_steps
+from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
+from smash.planners.shorten import shorten
+from smash.planners.targets import Piles, target_piles
+from smash.problem.model import Instance, PlanOptions, State
+from smash.problem.rules import Law
+
+PASSES = 12
+"""Passes after the first one, each with what the best plan so far taught (its times, its topples)."""
+NOISE = 0.6
+"""How much a pass's choices are disturbed, at most."""
+
+
+class GreedyPlanner(BasePlanner):
+    """Direct moves first; else topple, or put aside where it costs the least later; then passes that improve."""
+
+    summary: ClassVar[str] = "a plan at any size in near-linear time; infeasibility decided at once"
+
+    def solve(
+        self,
+        instance: Instance,
+        options: SolveOptions,
+        budget: float,
+        on_incumbent: OnIncumbent | None = None,
+    ) -> PlanResult:
+        """Plan at once; improve for some passes, within `budget` seconds."""
+        log = IncumbentLog(instance, options, on_incumbent)
+        problem = Indexed.of(instance)
+        found = False
+        for steps in greedy_steps(problem, options, perf_counter() + budget, options.seed):
+            found = True
+            log.offer(problem.actions(steps), "greedy")
+        if not found:
+            return log.result(infeasible=True, bound_origin="reachability")
+        return log.result(lower_bound=0 if log.cost == 0 else None, bound_origin="start" if log.cost == 0 else None)
+
+
+def greedy_steps(problem: Indexed, options: PlanOptions, deadline: float, seed: int = 0) -> Iterator[list[Step]]:
+    """Yield plans, each better than the one before; none at all only where no plan exists.
+
+    Args:
+        problem: the numbered instance.
+        options: what a plan may use.
+        deadline: when to stop improving, on the clock of `perf_counter` [s]; the first plan always comes.
+        seed: for the passes with disturbed choices.
+    """
+    state = State.start_of(problem.instance)
+    if Law(problem.instance, options).goal_shortfall(state) is None:
+        yield []
+        return
+    if not options.topple and problem.locations <= 2:
+        steps = line_steps(problem)
+        if steps is not None:
+            yield steps
+        return
+    target = target_piles(problem)
+    if target is not None:
+        yield from _Passes(problem, target, options, deadline, seed).improving()
+
+
+class _Passes:
+    """Passes of `Construction`, each disturbed otherwise, from what the best one taught."""
+
+    def __init__(self, problem: Indexed, target: Piles, options: PlanOptions, deadline: float, seed: int) -> None:
+        self.problem = problem
+        self.target = target
+        self.topple = options.topple
+        self.cap = options.max_topple or max(1, problem.blocks)
+        self.deadline = deadline
+        self.draw = random.Random(seed)
+        self.best: list[Step] = []
+        self.due: Sequence[float] = self._heights()
+        self.toppled: set[int] = set()
+
+    def improving(self) -> Iterator[list[Step]]:
+        """Yield the first plan and every better one."""
+        self._better(())
+        yield self.best
+        for attempt in self._attempts():
+            if perf_counter() > self.deadline:
+                return
+            if self._better(*attempt):
+                yield self.best
+
+    def _attempts(self) -> Iterator[tuple[Sequence[int], float]]:
+        """Yield (stacks toppled at the start, noise): leave out one topple at a time, then disturb the choices."""
+        for stack in sorted(self.toppled):
+            if stack in self.toppled:
+                yield sorted(self.toppled - {stack}), 0.0
+        for number in range(PASSES):
+            yield (), NOISE * number / PASSES
+
+    def _better(self, first: Sequence[int], noise: float = 0.0) -> bool:
+        """Make one pass; keep its plan, times and topples if it is the best so far."""
+        construction = Construction(
+            self.problem,
+            self.target,
+            topple=self.topple,
+            cap=self.cap,
+            due=self.due,
+            noise=noise,
+            draw=self.draw,
+        )
+        steps = shorten(construction.run(first))
+        if self.best and cost_of(steps) >= cost_of(self.best):
+            return False
+        self.best = steps
+        self.due = construction.finished_at
+        self.toppled = construction.toppled
+        return True
+
+    def _heights(self) -> list[float]:
+        """Return the first guess of when each block is due: its height in the target."""
+        due = [NEVER] * self.problem.blocks
+        for pile in self.target:
+            for height, block in enumerate(pile):
+                due[block] = float(height)
+        return due
