@@ -1,0 +1,172 @@
+"""A mixed-integer linear program as arrays: built here, looked at or written to a file, and only then solved.
+
+`highs.solve` and `gurobi.solve` take the same `Milp` and give the same `MilpResult`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+MilpStatus = Literal["optimal", "feasible", "infeasible", "unknown"]
+"""`optimal` and `infeasible` are the solver's proofs about the model, not about the instance behind it."""
+
+OnSolution = Callable[[float, float, Floats], None]
+"""`on_solution(seconds, objective, vector)`: called with each better solution; seconds since the solve began."""
+
+
+@dataclass(frozen=True, slots=True)
+class Milp:
+    """Minimise `objective @ x` under `row_lower <= matrix @ x <= row_upper` and `lower <= x <= upper`.
+
+    Shapes: n columns, m rows; `objective`, `lower`, `upper`: (n,) floats; `integral`: (n,) bools;
+    `matrix`: (m, n) CSR; `row_lower`, `row_upper`: (m,) floats, infinite where a side is free.
+    `name` says what a column means, for files and for people.
+    """
+
+    objective: Floats
+    lower: Floats
+    upper: Floats
+    integral: NDArray[np.bool_]
+    matrix: csr_array[Any]
+    row_lower: Floats
+    row_upper: Floats
+    name: Callable[[int], str] = str
+
+    @property
+    def columns(self) -> int:
+        """Number of variables n."""
+        return len(self.objective)
+
+    @property
+    def rows(self) -> int:
+        """Number of constraints m."""
+        return len(self.row_lower)
+
+    def size(self) -> dict[str, int]:
+        """Return the counts of columns, integer columns, rows and non-zeros."""
+        return {
+            "columns": self.columns,
+            "integer_columns": int(self.integral.sum()),
+            "rows": self.rows,
+            "nonzeros": int(self.matrix.nnz),
+        }
+
+    def violation(self, vector: Floats) -> float:
+        """Return the largest violation of a row or a bound at `vector` (shape (n,)); 0 where it is feasible."""
+        activity = self.matrix @ vector
+        gaps = [self.row_lower - activity, activity - self.row_upper, self.lower - vector, vector - self.upper]
+        return max(0.0, *(float(gap.max(initial=0.0)) for gap in gaps))
+
+
+@dataclass(frozen=True, slots=True)
+class MilpResult:
+    """What a solver proved and found. `bound` is its dual bound on the objective, -inf where it has none."""
+
+    status: MilpStatus
+    objective: float | None
+    bound: float
+    vector: Floats | None
+    seconds: float
+    nodes: int
+
+
+@dataclass(slots=True)
+class MilpBuilder:
+    """Collects columns and rows in blocks of arrays; `build` makes the `Milp`."""
+
+    _costs: list[Floats] = field(default_factory=list)
+    _lower: list[Floats] = field(default_factory=list)
+    _upper: list[Floats] = field(default_factory=list)
+    _integral: list[NDArray[np.bool_]] = field(default_factory=list)
+    _columns: int = 0
+    _entries: list[tuple[Ints, Ints, Floats]] = field(default_factory=list)
+    _row_lower: list[Floats] = field(default_factory=list)
+    _row_upper: list[Floats] = field(default_factory=list)
+    _rows: int = 0
+
+    @property
+    def columns(self) -> int:
+        """Number of columns so far."""
+        return self._columns
+
+    def add_columns(
+        self,
+        count: int,
+        *,
+        cost: ArrayLike = 0.0,
+        lower: ArrayLike = 0.0,
+        upper: ArrayLike = 1.0,
+        integral: bool = True,
+    ) -> Ints:
+        """Append `count` columns (binaries by default) and return their indices, shape (count,)."""
+        for store, value in ((self._costs, cost), (self._lower, lower), (self._upper, upper)):
+            store.append(np.broadcast_to(np.asarray(value, dtype=float), (count,)))
+        self._integral.append(np.full(count, integral))
+        indices = np.arange(self._columns, self._columns + count)
+        self._columns += count
+        return indices
+
+    def add_rows(
+        self,
+        rows: ArrayLike,
+        columns: ArrayLike,
+        values: ArrayLike,
+        *,
+        count: int,
+        lower: ArrayLike = -np.inf,
+        upper: ArrayLike = np.inf,
+    ) -> None:
+        """Append `count` rows by their entries.
+
+        Args:
+            rows: row of each entry, counted from 0 within this block; shape (k,).
+            columns: column of each entry; shape (k,). Entries at one place add up.
+            values: coefficient of each entry, or one for all.
+            count: number of rows.
+            lower: lower sides, shape (count,) or one for all.
+            upper: upper sides, shape (count,) or one for all.
+        """
+        at = np.asarray(rows, dtype=np.int64).ravel()
+        where = np.asarray(columns, dtype=np.int64).ravel()
+        self._entries.append((at + self._rows, where, np.broadcast_to(np.asarray(values, dtype=float), at.shape)))
+        self._row_lower.append(np.broadcast_to(np.asarray(lower, dtype=float), (count,)))
+        self._row_upper.append(np.broadcast_to(np.asarray(upper, dtype=float), (count,)))
+        self._rows += count
+
+    def add_row(self, columns: ArrayLike, values: ArrayLike, *, lower: float = -np.inf, upper: float = np.inf) -> None:
+        """Append one row."""
+        where = np.asarray(columns, dtype=np.int64).ravel()
+        self.add_rows(np.zeros(len(where)), where, values, count=1, lower=lower, upper=upper)
+
+    def build(self, name: Callable[[int], str] = str) -> Milp:
+        """Return the model."""
+        from scipy.sparse import coo_array
+
+        rows, columns, values = (_joined([entry[part] for entry in self._entries]) for part in range(3))
+        shape = (self._rows, self._columns)
+        matrix = coo_array((values, (rows.astype(np.int64), columns.astype(np.int64))), shape=shape).tocsr()
+        return Milp(
+            objective=_joined(self._costs),
+            lower=_joined(self._lower),
+            upper=_joined(self._upper),
+            integral=np.concatenate(self._integral) if self._integral else np.zeros(0, dtype=bool),
+            matrix=matrix,
+            row_lower=_joined(self._row_lower),
+            row_upper=_joined(self._row_upper),
+            name=name,
+        )
+
+
+def _joined(parts: list[Any]) -> Floats:
+    return np.concatenate(parts).astype(float) if parts else np.zeros(0)

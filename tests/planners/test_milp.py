@@ -1,0 +1,61 @@
+"""The array form of a MILP: two solvers give the same optimum, starts are taken, files are written."""
+
+import numpy as np
+import pytest
+
+from smash.planners import gurobi, highs
+from smash.planners.milp import MilpBuilder
+from smash.problem import MalformedFile
+
+
+def cover(seed=0, elements=12, sets=20):
+    """Return a random set-cover model."""
+    draw = np.random.default_rng(seed)
+    builder = MilpBuilder()
+    columns = builder.add_columns(sets, cost=draw.integers(1, 5, sets))
+    member = draw.random((elements, sets)) < 0.3
+    member[:, 0] = True
+    rows, where = np.nonzero(member)
+    builder.add_rows(rows, columns[where], 1.0, count=elements, lower=1.0)
+    return builder.build(name=lambda j: f"take_{j}")
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_highs_and_gurobi_prove_the_same_optimum(seed):
+    pytest.importorskip("gurobipy")
+    model = cover(seed)
+    ours, theirs = highs.solve(model, time_limit=10), gurobi.solve(model, time_limit=10)
+    assert ours.status == theirs.status == "optimal"
+    assert ours.objective == pytest.approx(theirs.objective)
+    assert model.violation(ours.vector) < 1e-6
+
+
+def test_every_better_solution_is_reported_with_its_objective():
+    model, seen = cover(3, 40, 80), []
+    result = highs.solve(model, time_limit=10, on_solution=lambda t, value, vector: seen.append((t, value, vector)))
+    assert seen
+    assert all(value == pytest.approx(model.objective @ vector) for _, value, vector in seen)
+    assert seen[-1][1] == pytest.approx(result.objective)
+
+
+def test_a_contradiction_is_infeasible():
+    builder = MilpBuilder()
+    column = builder.add_columns(1)
+    builder.add_row(column, 1.0, lower=0.4, upper=0.6)
+    assert highs.solve(builder.build(), time_limit=5).status == "infeasible"
+
+
+def test_a_model_without_columns_is_solved():
+    assert highs.solve(MilpBuilder().build(), time_limit=5).status == "optimal"
+
+
+def test_a_solve_ends_where_it_is_asked_to():
+    result = highs.solve(cover(1, 300, 600), time_limit=30, should_stop=lambda: True)
+    assert result.seconds < 10
+
+
+def test_a_model_is_written_with_the_names_of_its_columns(tmp_path):
+    highs.write(cover(), tmp_path / "m.mps")
+    assert "take_3" in (tmp_path / "m.mps").read_text()
+    with pytest.raises(MalformedFile):
+        highs.write(cover(), tmp_path / "m.txt")
