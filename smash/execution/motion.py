@@ -1,0 +1,233 @@
+"""Motions between configurations and to tool poses, free of collisions.
+
+A `MotionPlanner` tries the straight joint segment first, then a tree. `line` keeps the tool on a straight line
+(approach, lift, topple push); `reach` chains a free motion and a line to a tool pose. Whatever is returned has been
+checked a second time, against the hulls of the robot's meshes. Configurations are in rad, shape (7,); lengths in m.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from smash.execution.collision import CONTACT_MARGIN, DEFAULT_MARGIN, CollisionChecker
+from smash.execution.errors import NoIk, NoMotion
+from smash.execution.hulls import Contact, HullChecker, densify
+from smash.execution.kinematics import along_line, inverse
+from smash.execution.paths import Path, round_corners
+from smash.execution.poses import ToolPose, Vector
+from smash.execution.robot import within_limits
+from smash.execution.scene import HandState, Scene
+
+LINE_STEP = 0.01
+"""Tool poses along a line are this far apart [m]."""
+HULL_STEP = 0.05
+"""Between two checks of the hulls no joint moves further than this [rad]."""
+HULL_TOLERANCE = 0.003
+"""The hulls may enter a box by this much in motions that end in contact [m]."""
+SEARCHES = 2
+"""Tree searches, each with its own seed, before a query is given up."""
+SOLUTIONS_PER_POSE = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Reach:
+    """A free motion and a straight line that end at a tool pose.
+
+    Attributes:
+        index: Which of the poses asked for was reached.
+        transfer: From the start to where the line begins.
+        approach: The line to the pose; `approach.reversed()` retreats.
+    """
+
+    index: int
+    transfer: Path
+    approach: Path
+
+
+class MotionPlanner:
+    """Plans motions of the Panda among boxes.
+
+    The same arguments and seed give the same path, bit for bit, whatever was planned before.
+
+    Args:
+        margin: Distance to keep from the scene where no contact is meant [m].
+        seed: Of all random choices, 0 or more.
+        verify: Check every path against the hulls before it is returned.
+    """
+
+    def __init__(self, *, margin: float = DEFAULT_MARGIN, seed: int = 0, verify: bool = True) -> None:
+        self.margin = margin
+        self.seed = seed
+        self.verify = verify
+
+    def plan(
+        self,
+        start: Vector,
+        goals: NDArray[np.float64],
+        scene: Scene,
+        *,
+        hand: HandState | None = None,
+        margin: float | None = None,
+    ) -> Path:
+        """A free path from `start` to one of `goals`: the nearest straight segment, else a tree's path.
+
+        Args:
+            start: [rad], shape (7,).
+            goals: [rad], shape (7,) or (G, 7).
+            scene: What must not be touched; leave out what may be (`scene.without(names)`).
+            hand: Finger opening and carried block; closed and empty by default.
+            margin: Distance to keep [m], the planner's own by default.
+
+        Raises:
+            NoMotion: Start or all goals are in collision, or no path was found.
+        """
+        held = hand or HandState()
+        checker = CollisionChecker(scene, held, self.margin if margin is None else margin)
+        begin = np.ascontiguousarray(start, dtype=np.float64)
+        self._require_free(begin, checker, "the start")
+        ends = self._free_goals(np.atleast_2d(np.asarray(goals, dtype=np.float64)), begin, checker)
+        hulls = self._hulls(scene, held)
+        for end in ends:
+            if checker.segment_free(begin, end):
+                straight = np.stack([begin, end])
+                if self._contact(straight, hulls) is None:
+                    return Path(straight, "straight")
+        return self._tree_path(begin, ends, checker, hulls)
+
+    def line(
+        self,
+        start: Vector,
+        displacement: ArrayLike,
+        scene: Scene,
+        *,
+        hand: HandState | None = None,
+        margin: float = CONTACT_MARGIN,
+    ) -> Path:
+        """Move the tool on a straight line, its orientation kept.
+
+        Args:
+            start: Where the line begins [rad], shape (7,).
+            displacement: From there, in the world [m], shape (3,).
+            scene: What must not be touched.
+            hand: Finger opening and carried block.
+            margin: Distance to keep [m]; by default touching is allowed, as at the end of a placement.
+
+        Raises:
+            NoIk: The line leaves the arm's reach.
+            NoMotion: Something is in the way.
+        """
+        held = hand or HandState()
+        offset = np.asarray(displacement, dtype=np.float64)
+        count = max(1, int(np.ceil(float(np.linalg.norm(offset)) / LINE_STEP)))
+        rows = along_line(start, [offset * step / count for step in range(1, count + 1)])
+        if rows is None:
+            raise NoIk(f"the tool cannot follow the line by {_say(offset)} from where it is")
+        waypoints = np.stack([np.asarray(start, dtype=np.float64), *rows])
+        checker = CollisionChecker(scene, held, margin)
+        if not checker.path_free(waypoints):
+            raise NoMotion(f"a line by {_say(offset)} is blocked by {_blocked_by(waypoints, checker)}")
+        contact = self._contact(waypoints, self._hulls(scene, held))
+        if contact is not None:
+            raise NoMotion(f"on a line by {_say(offset)}, {contact}")
+        return Path(waypoints, "line")
+
+    def reach(
+        self,
+        start: Vector,
+        poses: Sequence[ToolPose],
+        scene: Scene,
+        *,
+        back: ArrayLike = (0.0, 0.0, 0.10),
+        hand: HandState | None = None,
+        contact_scene: Scene | None = None,
+    ) -> Reach:
+        """A free motion to `pose + back` and a line from there to the pose, for the first pose that allows it.
+
+        Args:
+            start: [rad], shape (7,).
+            poses: Tool poses, the best first.
+            scene: What the free motion must not touch.
+            back: Where the line begins, relative to the pose [m], shape (3,).
+            hand: Finger opening and carried block during both motions.
+            contact_scene: What the line must not touch: `scene` less the block to be grasped, say; `scene` by default.
+
+        Raises:
+            NoIk: No pose can be reached.
+            NoMotion: Poses can be reached, but no motion leads there; the message is about the best pose.
+        """
+        near = scene if contact_scene is None else contact_scene
+        problem: NoMotion | None = None
+        for index, pose in enumerate(poses):
+            for solution in inverse(pose, start, count=SOLUTIONS_PER_POSE, seed=self.seed):
+                try:
+                    retreat = self.line(solution, back, near, hand=hand)
+                    transfer = self.plan(start, retreat.end, scene, hand=hand)
+                except NoIk:
+                    continue
+                except NoMotion as failure:
+                    problem = problem or failure
+                    continue
+                return Reach(index, transfer, retreat.reversed())
+        raise problem or NoIk(f"none of {len(poses)} tool poses can be reached with a straight approach")
+
+    def contact(
+        self, configurations: NDArray[np.float64], scene: Scene, *, hand: HandState | None = None
+    ) -> Contact | None:
+        """The first contact of the robot's hulls along configurations [rad], shape (T, 7), or None."""
+        return HullChecker(scene, hand, HULL_TOLERANCE).contact(configurations)
+
+    def _tree_path(
+        self, begin: Vector, ends: NDArray[np.float64], checker: CollisionChecker, hulls: HullChecker | None
+    ) -> Path:
+        from smash.execution.tree import connect
+
+        for search in range(SEARCHES):
+            corners = connect(begin, ends, checker, 1 + SEARCHES * self.seed + search)
+            if corners is None:
+                continue
+            waypoints = round_corners(corners, checker.path_free)
+            if self._contact(waypoints, hulls) is None:
+                return Path(waypoints, "tree")
+        raise NoMotion(
+            f"no path was found; the straight one is blocked by {_blocked_by(np.stack([begin, ends[0]]), checker)}"
+        )
+
+    def _free_goals(self, goals: NDArray[np.float64], begin: Vector, checker: CollisionChecker) -> NDArray[np.float64]:
+        """The goals that are free, nearest to `begin` first."""
+        free = [goal for goal in goals if within_limits(goal) and checker.free(goal)]
+        if not free:
+            self._require_free(np.ascontiguousarray(goals[0]), checker, "the goal")
+        return np.stack(sorted(free, key=lambda goal: float(np.linalg.norm(goal - begin))))
+
+    @staticmethod
+    def _require_free(joints: Vector, checker: CollisionChecker, what: str) -> None:
+        if not within_limits(joints):
+            raise NoMotion(f"{what} is beyond the joint limits")
+        if not checker.free(joints):
+            close = ", ".join(checker.blockers(joints)) or "something"
+            raise NoMotion(f"{what} is closer than {checker.margin * 1000:.0f} mm to {close}")
+
+    def _hulls(self, scene: Scene, hand: HandState) -> HullChecker | None:
+        return HullChecker(scene, hand, HULL_TOLERANCE) if self.verify else None
+
+    @staticmethod
+    def _contact(waypoints: NDArray[np.float64], hulls: HullChecker | None) -> Contact | None:
+        return None if hulls is None else hulls.contact(densify(waypoints, HULL_STEP))
+
+
+def _blocked_by(waypoints: NDArray[np.float64], checker: CollisionChecker) -> str:
+    """What stops the first blocked segment of a polyline [rad], shape (W, 7)."""
+    for begin, end in pairwise(waypoints):
+        done = checker.segment_reach(begin, end)
+        if done < 1.0:
+            return ", ".join(checker.blockers(begin + done * (end - begin))) or "something"
+    return "nothing"
+
+
+def _say(offset: Vector) -> str:
+    return "(" + ", ".join(f"{float(value) * 100:.1f}" for value in offset) + ") cm"

@@ -1,0 +1,48 @@
+import numpy as np
+import pytest
+
+from smash.execution.motion import MotionPlanner
+from smash.execution.paths import Path
+from smash.execution.robot import ACCELERATION, READY, VELOCITY, panda
+from smash.execution.scene import Scene
+from smash.execution.timing import Pace, time_path, topple_pace, trapezoid
+
+CORNERS = np.stack([READY, READY + 0.4, READY + np.array([0.8, 0.2, 0, 0.1, 0, 0.3, -0.4])])
+EMPTY = Scene.of_boxes([], np.empty((0, 3)), 0.0)
+
+
+@pytest.mark.parametrize("path", [Path(CORNERS[:2], "straight"), Path(CORNERS, "tree")])
+@pytest.mark.parametrize("pace", [Pace(), Pace(0.25, 0.1)])
+def test_a_trajectory_starts_and_ends_at_rest_and_keeps_the_limits(path, pace):
+    trajectory = time_path(path, pace)
+    step = 1e-3
+    samples = np.vstack([path.start, trajectory.sample(step)])
+    velocity = np.diff(samples[:-1], axis=0) / step
+    acceleration = np.diff(velocity, axis=0) / step
+    assert np.allclose(samples[-1], path.end)
+    assert np.allclose(trajectory.velocities[[0, -1]], 0.0)
+    assert np.all(np.abs(velocity) <= pace.velocity * VELOCITY * 1.02)
+    assert np.quantile(np.abs(acceleration) / (pace.acceleration * ACCELERATION), 0.98) <= 1.1
+
+
+def test_a_straight_segment_runs_at_the_limit_of_its_slowest_joint():
+    trajectory = trapezoid(READY, READY + np.array([2.0, 0, 0, 0, 0, 0, 0]), Pace(1.0, 1.0))
+    assert trajectory.duration == pytest.approx(2.0 / VELOCITY[0] + VELOCITY[0] / ACCELERATION[0])
+    assert np.abs(trajectory.velocities).max() == pytest.approx(VELOCITY[0])
+
+
+@pytest.mark.parametrize(("blocks", "speed"), [(1, 0.5), (4, 0.5), (5, 0.8)])
+def test_the_topple_push_reaches_its_tool_speed_and_no_more(blocks, speed):
+    push = MotionPlanner().line(READY, (0.0, 0.25, 0.0), EMPTY)
+    trajectory = time_path(push, topple_pace(blocks))
+    step = 1e-3
+    tool = np.array([panda().forward(row).position for row in trajectory.sample(step)])
+    speeds = np.linalg.norm(np.diff(tool[:-1], axis=0), axis=1) / step
+    assert speeds.max() <= speed * 1.03
+    assert speeds.max() >= speed * 0.95
+
+
+def test_a_path_of_no_length_takes_no_time():
+    trajectory = time_path(Path(np.stack([READY, READY]), "straight"))
+    assert trajectory.duration == 0.0
+    assert np.array_equal(trajectory.sample(0.01), READY[None])
