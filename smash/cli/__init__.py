@@ -16,6 +16,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "plan": ("smash.cli.plan", "plan one instance and print or write the plan"),
     "validate": ("smash.cli.validate", "judge a plan by the law"),
     "planners": ("smash.cli.planners", "list the planners, what they support and what is missing"),
+    "draw": ("smash.cli.draw", "draw a gadget, an instance, or a plan as moving pebbles"),
 }
 """Subcommand -> (module that holds a click command called `command`, one line of help)."""
 

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+import math
+import os
+import signal
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from threading import Event
 
 import click
 
 from smash.cli import fail
-from smash.planners.protocol import SolveOptions
-from smash.planners.registry import DEFAULT, get_planner
-from smash.problem.errors import Unsupported
+from smash.experiments.isolation import run_isolated
+from smash.experiments.job import DEFAULT_MEMORY, Job, Report
+from smash.planners.protocol import OnIncumbent, SolveOptions
+from smash.planners.registry import DEFAULT
+from smash.problem.errors import MalformedFile
 from smash.problem.files import plan_text, read_instance, write_text
-
-EXIT_OF_STATUS = {"optimal": 0, "feasible": 0, "infeasible": 3, "unknown": 4}
+from smash.problem.model import Action
 
 
 @click.command("plan")
@@ -22,15 +30,24 @@ EXIT_OF_STATUS = {"optimal": 0, "feasible": 0, "infeasible": 3, "unknown": 4}
 @click.option("--max-topple", type=click.IntRange(min=1), metavar="M", help="At most M blocks in one topple.")
 @click.option(
     "--budget",
-    type=click.FloatRange(min=0, min_open=True),
+    type=click.FloatRange(min=0, min_open=True, max=1e9),
     default=30.0,
     show_default=True,
     metavar="SECONDS",
     help="Wall time, model building and translation included.",
 )
+@click.option(
+    "--memory",
+    type=click.IntRange(min=1),
+    default=DEFAULT_MEMORY,
+    show_default=True,
+    metavar="MIB",
+    help="Memory limit over all of the planner's processes.",
+)
 @click.option("--warm-start", metavar="NAME", help="Planner whose plan starts a MILP model (default: cold).")
 @click.option("--horizon", type=click.IntRange(min=1), metavar="T", help="Steps or layers of a time-indexed model.")
 @click.option("--threads", type=click.IntRange(min=1), default=1, show_default=True, help="Solver threads.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="For planners that draw.")
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Write the plan here (default: print).")
 def command(
     instance: Path,
@@ -38,38 +55,83 @@ def command(
     no_topple: bool,
     max_topple: int | None,
     budget: float,
+    memory: int,
     warm_start: str | None,
     horizon: int | None,
     threads: int,
+    seed: int,
     out: Path | None,
 ) -> None:
-    """Plan INSTANCE and print the plan as JSON, or write it with --out.
+    r"""Plan INSTANCE and print the plan as JSON, or write it with --out.
+
+    The planner runs in processes of its own. Ctrl-C ends them and keeps the best plan found so far.
 
     \b
     Examples:
       smash plan examples/figure1.json
       smash plan examples/figure1.json --no-topple --planner precedence --out plan.json
     """
-    problem = read_instance(instance)
-    options = SolveOptions(
-        topple=not no_topple,
-        max_topple=max_topple,
-        warm_start=warm_start,
-        horizon=horizon,
-        threads=threads,
-    )
-    chosen = get_planner(planner)
-    ask = getattr(chosen, "unsupported", None)
-    reason = ask(problem, options) if ask is not None else None
-    if reason:
-        raise Unsupported(f"planner {planner!r}: unsupported: {reason}")
-    result = chosen.solve(problem, options, budget)
-    text = plan_text(result.as_plan(problem, planner, options))
+    options = SolveOptions(not no_topple, max_topple, warm_start, horizon, threads, seed)
+    job = Job(planner, read_instance(instance), options, budget, memory)
+    if math.isnan(budget):
+        raise click.BadParameter("nan is no number of seconds", param_hint="--budget")
+    if out is not None and not os.access(out.parent, os.W_OK):
+        raise MalformedFile(str(out), "cannot be written: its directory is missing or closed")
+    with _stopped_by_signals() as stop, _progress(planner) as tell:
+        report = run_isolated(job, tell, stop)
+    _write(report, job, out)
+    _end(report, f"{instance}: planner {planner!r}")
+
+
+def _write(report: Report, job: Job, out: Path | None) -> None:
+    """File the plan: at exits 0, 3 and 4, and what was found before an interruption."""
+    if report.exit_code not in (0, 3, 4) and not (report.exit_code == 130 and report.actions is not None):
+        return
+    text = plan_text(report.plan(job))
     if out is None:
         click.echo(text, nl=False)
     else:
         write_text(out, text)
-    code = EXIT_OF_STATUS[result.status]
-    if code:
-        words = {3: "proven infeasible", 4: "budget spent without a plan"}[code]
-        fail(f"{instance}: {words}", code)
+
+
+def _end(report: Report, who: str) -> None:
+    found = f"; the best plan so far has cost {len(report.actions)}" if report.actions is not None else ""
+    words = {
+        "infeasible": "proven infeasible",
+        "budget-spent": "budget spent without a plan",
+        "interrupted": f"interrupted{found}",
+    }.get(report.outcome, f"{report.outcome}: {report.reason}")
+    if report.exit_code:
+        fail(f"{who}: {words}", report.exit_code)
+    if report.outcome == "over-budget":
+        print(f"smash: {who}: {words}; its best plan is kept", file=sys.stderr)
+
+
+@contextmanager
+def _stopped_by_signals() -> Iterator[Event]:
+    """Turn Ctrl-C and a polite kill into an event, so that what was found is still written."""
+    stop = Event()
+    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    before = [signal.signal(number, lambda *_: stop.set()) for number in numbers]
+    try:
+        yield stop
+    finally:
+        for number, handler in zip(numbers, before, strict=True):
+            signal.signal(number, handler)
+
+
+@contextmanager
+def _progress(planner: str) -> Iterator[OnIncumbent | None]:
+    """Show the best cost so far, where someone is watching."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.markup import escape
+
+    with Console(stderr=True).status(f"{escape(planner)}: no plan yet") as status:
+
+        def tell(seconds: float, cost: int, actions: Sequence[Action]) -> None:
+            status.update(f"{escape(planner)}: cost {cost} after {seconds:.2f} s")
+
+        yield tell

@@ -23,13 +23,14 @@ def decode(motion: PebbleMotion, instance: Instance, options: PlanOptions | None
     state = State.start_of(instance)
     actions: list[Action] = []
     for step in range(motion.steps):
-        for action in _step_actions(motion, step, state):
+        for action in step_actions(motion, step, state):
             law.apply(state, action)
             actions.append(action)
     return tuple(actions)
 
 
-def _step_actions(motion: PebbleMotion, step: int, state: State) -> list[Action]:
+def step_actions(motion: PebbleMotion, step: int, state: State) -> list[Action]:
+    """Return the actions of one step, in the state before it."""
     gadget = motion.gadget
     gathered: dict[Aggregate, list[str]] = defaultdict(list)
     transfers: list[Action] = []

@@ -73,6 +73,10 @@ class Planner(Protocol):
     - `unsupported(instance, options) -> str | None`, why it cannot take this problem, asked before it starts;
     - `anytime: bool`, whether it improves a first plan until the budget ends (its incumbents then stand for
       every smaller budget);
+    - `budget_dependent: bool`, whether what it does in its first seconds depends on how many it is given (it
+      shares its budget out among parts, say); it is then run at every budget by itself. Where the attribute is
+      missing, a planner that is not `anytime` counts as dependent;
+    - `prepare() -> None`, loads libraries and compiles what is compiled once, before the clock starts;
     - `proves: bool`, whether it can report `optimal`;
     - `missing() -> str | None`, what is not installed that it needs.
     """
@@ -94,6 +98,10 @@ class BasePlanner:
     summary: ClassVar[str] = ""
     anytime: ClassVar[bool] = True
     proves: ClassVar[bool] = False
+    budget_dependent: ClassVar[bool] = False
+
+    def prepare(self) -> None:
+        """Load what is loaded once and compile what is compiled once; not counted in the planner's time."""
 
     def unsupported(self, instance: Instance, options: SolveOptions) -> str | None:
         """Return why this planner cannot take the problem, or None."""

@@ -1,0 +1,188 @@
+"""A run's own process: limits hold, every end has a name, what was found is kept, nothing outlives it."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from threading import Event, Timer
+
+import psutil
+import pytest
+
+from smash.experiments.isolation import run_isolated
+from smash.experiments.job import Job
+from smash.planners.protocol import SolveOptions
+from smash.problem.files import read_instance
+
+pytestmark = pytest.mark.usefixtures("third_party")
+
+
+@pytest.fixture
+def run(tower_file):
+    def call(planner, budget=5.0, memory=2048, topple=True, **more):
+        return run_isolated(
+            Job(planner, read_instance(tower_file), SolveOptions(topple=topple), budget, memory), **more
+        )
+
+    return call
+
+
+def marked(mark):
+    """Processes that carry this value of MARKED in their environment."""
+    found = []
+    for process in psutil.process_iter():
+        with suppress(psutil.Error, OSError):
+            if process.environ().get("MARKED") == mark:
+                found.append(process)
+    return found
+
+
+@pytest.fixture
+def alive(monkeypatch, tmp_path):
+    """Count this test's processes that are still alive, ourselves apart (the mark is inherited)."""
+    mark = tmp_path.name + str(time.time())
+    monkeypatch.setenv("MARKED", mark)
+
+    def count():
+        return [p for p in marked(mark) if p.pid != os.getpid() and p.status() != psutil.STATUS_ZOMBIE]
+
+    return count
+
+
+def test_incumbents_arrive_as_they_are_found_and_times_to_come_are_replaced(run):
+    heard = []
+    report = run("sound", on_incumbent=lambda seconds, cost, actions: heard.append((seconds, cost)))
+    assert [cost for _, cost in heard] == [9, 5, 3]
+    assert heard[0][0] == 0.0
+    assert 0.1 < heard[1][0] < heard[2][0] < 5
+    assert (report.outcome, report.status, len(report.actions), report.lower_bound) == ("optimal", "optimal", 3, 3)
+    assert report.incumbents[-1].origin == "engine"
+    assert report.details == {"nodes": 7}
+    assert report.verdict.accepted
+    assert report.memory_mib > 1
+    assert report.wall_seconds < 5
+
+
+def test_a_plan_that_was_never_streamed_counts_from_the_end_of_the_call(run):
+    report = run("bare")
+    assert report.outcome == "feasible"
+    assert [entry.cost for entry in report.incumbents] == [3]
+
+
+@pytest.mark.parametrize(
+    ("planner", "outcome", "words"),
+    [
+        ("raises", "crashed", "ValueError: no luck (troubled.py:"),
+        ("raises-at-import", "crashed", "RuntimeError: born broken"),
+        ("segfaults", "crashed", "SIGSEGV"),
+        ("exits", "crashed", "exit code 3"),
+        ("cheats", "refused", "step 1"),
+        ("boasts", "refused", "lower bound 4"),
+        ("mumbles", "crashed", "no valid PlanResult"),
+        ("gives-up", "budget-spent", ""),
+        ("declines", "unsupported", "not today"),
+        ("lacks", "not-installed", "pip install luck"),
+    ],
+)
+def test_every_end_has_a_name_and_a_reason(run, planner, outcome, words):
+    report = run(planner)
+    assert report.outcome == outcome
+    assert words in report.reason
+    assert "\n" not in report.reason
+
+
+def test_a_crash_keeps_what_was_found_and_what_was_printed(run):
+    report = run("segfaults")
+    assert [entry.cost for entry in report.incumbents] == [5]
+    assert "Segmentation fault" in report.log
+
+
+def test_infeasible_is_passed_on(run):
+    assert run("gives-up", topple=False).status == "infeasible"
+
+
+def test_a_planner_that_prints_disturbs_nothing(run):
+    report = run("shouts")
+    assert report.outcome == "feasible"
+    assert "more noise" in report.log
+
+
+def test_a_hang_is_stopped_within_its_grace_and_keeps_its_plan(run, alive):
+    started = time.monotonic()
+    report = run("hangs-with-plan", budget=0.3)
+    assert time.monotonic() - started < 0.3 + 0.5 + 1.0
+    assert (report.outcome, report.status, report.exit_code) == ("over-budget", "feasible", 0)
+    assert not alive()
+
+
+def test_a_busy_hang_without_a_plan_is_budget_spent(run):
+    report = run("hangs", budget=0.2)
+    assert (report.outcome, report.status, report.exit_code) == ("over-budget", "unknown", 4)
+
+
+@pytest.mark.parametrize("planner", ["eats-memory", "eats-memory-in-a-child"])
+def test_memory_is_watched_over_the_whole_tree(run, planner, alive):
+    report = run(planner, memory=300, budget=20)
+    assert report.outcome == "memory"
+    assert report.memory_mib > 300
+    assert not alive()
+
+
+def test_children_in_sessions_of_their_own_end_with_the_run(run, alive):
+    assert run("leaves-children", budget=0.5).outcome == "over-budget"
+    assert not alive()
+
+
+def test_stopping_a_run_keeps_its_plan_and_leaves_no_process(run, alive):
+    stop = Event()
+    Timer(0.6, stop.set).start()
+    report = run("leaves-children", budget=60, stop=stop)
+    assert (report.outcome, report.status, len(report.actions)) == ("interrupted", "feasible", 5)
+    assert not alive()
+
+
+def wait_until(condition, seconds=10.0):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if condition():
+            return True
+        time.sleep(0.05)
+    return False
+
+
+def test_nothing_survives_a_caller_killed_with_sigkill(alive, tower_file):
+    caller = subprocess.Popen(
+        [sys.executable, "-m", "smash", "plan", str(tower_file), "--planner", "leaves-children", "--budget", "60"]
+    )
+    assert wait_until(lambda: len(alive()) >= 5)
+    caller.kill()
+    caller.wait()
+    assert wait_until(lambda: not alive())
+
+
+def test_nothing_survives_a_guardian_killed_with_sigkill(alive, tower_file):
+    caller = subprocess.Popen(
+        [sys.executable, "-m", "smash", "plan", str(tower_file), "--planner", "leaves-children", "--budget", "60"],
+        stderr=subprocess.PIPE,
+    )
+    assert wait_until(lambda: len(alive()) >= 5)
+    psutil.Process(caller.pid).children()[0].kill()
+    assert caller.wait(10) == 7
+    assert not alive()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_plan_command_writes_what_was_found(alive, tower_file, tmp_path, number):
+    out = tmp_path / "plan.json"
+    command = [sys.executable, "-m", "smash", "plan", tower_file, "--planner", "leaves-children", "--out", out]
+    caller = subprocess.Popen(list(map(str, command)), stderr=subprocess.PIPE, text=True)
+    assert wait_until(lambda: len(alive()) >= 5)
+    time.sleep(0.3)
+    caller.send_signal(number)
+    _, said = caller.communicate(timeout=20)
+    assert caller.returncode == 130
+    assert said.count("\n") == 1
+    assert '"cost": 5' in out.read_text()
+    assert not alive()

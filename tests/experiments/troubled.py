@@ -1,0 +1,161 @@
+"""Planners with only `solve`, as a third party would write them: sound ones and every kind of trouble."""
+
+import ctypes
+import os
+import subprocess
+import sys
+import time
+
+from smash.planners.protocol import PlanResult
+from smash.problem import Pick, Place, Topple
+from smash.problem.plan import Incumbent
+
+SLEEPER = [sys.executable, "-c", "import time; time.sleep(600)"]
+
+
+def detour(instance, rounds):
+    """A legal plan for `tower` made longer by picking and placing the same block `rounds` times."""
+    top, source = "b2", "s1"
+    wasted = [action for _ in range(rounds) for action in (Pick(top, source), Place(top, source))]
+    return (*wasted, Topple("s1", 2), Pick("b1", "s1"), Place("b1", "s2"))
+
+
+class Sound:
+    anytime = True
+    budget_dependent = False
+
+    def solve(self, instance, options, budget, on_incumbent=None):
+        for rounds, pause in ((3, 0.0), (1, 0.15), (0, 0.1)):
+            time.sleep(pause)
+            plan = detour(instance, rounds)
+            if on_incumbent:
+                on_incumbent(0.0 if rounds == 3 else 1e9, len(plan), plan)
+        return PlanResult("optimal", plan, 3, "seen", (Incumbent(0.25, 3, "engine"),), {"nodes": 7})
+
+
+class Bare:
+    def solve(self, instance, options, budget, on_incumbent=None):
+        return PlanResult("feasible", detour(instance, 0))
+
+
+class Raises:
+    def solve(self, instance, options, budget, on_incumbent=None):
+        raise ValueError("no\nluck")
+
+
+class RaisesAtImport:
+    def __init__(self):
+        raise RuntimeError("born broken")
+
+
+class Segfaults:
+    def solve(self, instance, options, budget, on_incumbent=None):
+        on_incumbent(0.0, 5, detour(instance, 1))
+        ctypes.string_at(0)
+
+
+class Exits:
+    def solve(self, instance, options, budget, on_incumbent=None):
+        os._exit(3)
+
+
+class HangsWithPlan:
+    def solve(self, instance, options, budget, on_incumbent=None):
+        on_incumbent(0.0, 5, detour(instance, 1))
+        time.sleep(600)
+
+
+class Hangs:
+    def solve(self, instance, options, budget, on_incumbent=None):
+        while True:
+            pass
+
+
+class LeavesChildren:
+    """Starts a process in a session of its own, and one that is orphaned at once; then hangs."""
+
+    def solve(self, instance, options, budget, on_incumbent=None):
+        subprocess.Popen(SLEEPER, start_new_session=True)
+        if os.fork() == 0:
+            subprocess.Popen(SLEEPER, start_new_session=True)
+            os._exit(0)
+        on_incumbent(0.0, 5, detour(instance, 1))
+        time.sleep(600)
+
+
+class EatsMemory:
+    def solve(self, instance, options, budget, on_incumbent=None):
+        hoard = []
+        while True:
+            hoard.append(bytearray(os.urandom(1) * 2**24))
+            time.sleep(0.01)
+
+
+class EatsMemoryInAChild:
+    def solve(self, instance, options, budget, on_incumbent=None):
+        subprocess.run([sys.executable, "-c", "import time; x = b'x' * 2**29; time.sleep(600)"], check=False)
+
+
+class Cheats:
+    def solve(self, instance, options, budget, on_incumbent=None):
+        return PlanResult("optimal", (Pick("b1", "s1"), Place("b1", "s2")), 2, "wishful")
+
+
+class Boasts:
+    def solve(self, instance, options, budget, on_incumbent=None):
+        return PlanResult("feasible", detour(instance, 0), 4, "wishful")
+
+
+class Mumbles:
+    def solve(self, instance, options, budget, on_incumbent=None):
+        return "a plan"
+
+
+class GivesUp:
+    def solve(self, instance, options, budget, on_incumbent=None):
+        return PlanResult("infeasible" if not options.topple else "unknown")
+
+
+class Declines:
+    def unsupported(self, instance, options):
+        return "not today"
+
+    def solve(self, instance, options, budget, on_incumbent=None):
+        raise AssertionError
+
+
+class Lacks:
+    def missing(self):
+        return "pip install luck"
+
+    def solve(self, instance, options, budget, on_incumbent=None):
+        raise AssertionError
+
+
+class Shouts:
+    def solve(self, instance, options, budget, on_incumbent=None):
+        print("noise")
+        os.write(1, b"more noise\n")
+        return PlanResult("feasible", detour(instance, 0))
+
+
+PLANNERS = {
+    "sound": Sound,
+    "bare": Bare,
+    "raises": Raises,
+    "raises-at-import": RaisesAtImport,
+    "segfaults": Segfaults,
+    "exits": Exits,
+    "hangs-with-plan": HangsWithPlan,
+    "hangs": Hangs,
+    "leaves-children": LeavesChildren,
+    "eats-memory": EatsMemory,
+    "eats-memory-in-a-child": EatsMemoryInAChild,
+    "cheats": Cheats,
+    "boasts": Boasts,
+    "mumbles": Mumbles,
+    "gives-up": GivesUp,
+    "declines": Declines,
+    "lacks": Lacks,
+    "shouts": Shouts,
+}

@@ -1,0 +1,99 @@
+"""Every gadget, instance and motion can be drawn; files are what their suffix says."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from smash.gadget import gadget_of, smash_gadget
+from smash.gadget.drawing.figure import draw_gadget
+from smash.gadget.drawing.layout import lay_out
+from smash.gadget.drawing.pebbles import draw_motion, step_captions, strip_layers
+from smash.gadget.drawing.piles import draw_instance
+from smash.gadget.drawing.style import RADIUS
+from smash.gadget.encode import encode
+from smash.problem import OnGoal, Pick, Place, PositionsGoal, SmashError, Topple, make_instance
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+MAGIC = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml", ".gif": b"GIF8"}
+
+
+@pytest.fixture
+def odd():
+    """Return an instance with names that a drawing could trip over, blocks on the table and on a buffer."""
+    return make_instance(
+        name="odd",
+        blocks=["$x_2$", "", "a\nb", "größe & <b>"],
+        stacks=["s 1", "$s$", "a long name of a location"],
+        buffers=["u", "v"],
+        start={"s 1": ["$x_2$", "a\nb"], "u": [""]},
+        table=["größe & <b>"],
+        goal=OnGoal({"$x_2$": "größe & <b>"}, ("",)),
+    )
+
+
+@pytest.mark.parametrize(("stacks", "blocks"), [(1, 0), (1, 1), (3, 4), (8, 3)])
+def test_no_two_nodes_of_a_gadget_are_drawn_over_each_other(stacks, blocks):
+    gadget = smash_gadget([f"s{number}" for number in range(stacks)], blocks)
+    places = lay_out(gadget).nodes
+    for index, (x, y) in enumerate(places):
+        assert all(abs(x - u) + abs(y - v) > 2 * RADIUS for u, v in places[:index])
+
+
+@pytest.mark.parametrize("suffix", [".png", ".pdf", ".svg"])
+def test_a_gadget_is_drawn_to_every_still_format(tmp_path, suffix):
+    path = tmp_path / f"gadget{suffix}"
+    draw_gadget(smash_gadget(["s1", "s2"], 2), path)
+    assert path.read_bytes().startswith(MAGIC[suffix])
+
+
+def test_odd_names_are_drawn(tmp_path, odd):
+    draw_instance(odd, tmp_path / "instance.svg")
+    draw_gadget(gadget_of(odd), tmp_path / "gadget.svg")
+    plan = [Topple("s 1", 2), Pick("a\nb", "table"), Place("a\nb", "$s$")]
+    draw_motion(encode(odd, plan), odd, tmp_path / "plan.svg")
+    assert "$x_2$"[:3] in (tmp_path / "instance.svg").read_text(encoding="utf-8")
+
+
+def test_an_instance_without_blocks_is_drawn(tmp_path):
+    empty = make_instance(name="empty", blocks=[], stacks=["s"], start={}, goal=PositionsGoal({}))
+    draw_instance(empty, tmp_path / "instance.png")
+    draw_motion(encode(empty, []), empty, tmp_path / "motion.png")
+    draw_motion(encode(empty, []), empty, tmp_path / "motion.gif")
+
+
+def test_captions_say_the_actions_of_each_step(odd):
+    plan = [Topple("s 1", 2), Pick("a\nb", "table"), Place("a\nb", "$s$")]
+    captions = step_captions(encode(odd, plan), odd)
+    assert [caption for caption in captions if caption] == ["topple s 1 from height 2", "a\\nb: table → $s$"]
+
+
+def test_a_strip_has_the_start_the_staged_blocks_what_follows_and_the_end():
+    assert strip_layers(["", "topple s1 from height 2", "", ""]) == [0, 1, 2, 4]
+    assert len(strip_layers(["x"] * 100)) == 12
+
+
+@pytest.mark.parametrize("name", ["picture.txt", "picture"])
+def test_other_suffixes_are_refused(tmp_path, name):
+    with pytest.raises(SmashError, match="allowed"):
+        draw_gadget(smash_gadget(["s1"], 1), tmp_path / name)
+
+
+def test_a_directory_that_is_not_there_is_one_line(tmp_path):
+    with pytest.raises(SmashError, match="cannot be written"):
+        draw_gadget(smash_gadget(["s1"], 1), tmp_path / "no" / "x.png")
+
+
+def test_the_command_animates_a_plan(tmp_path):
+    actions = [["topple", "s1", 2], ["pick", "b1", "s1"], ["place", "b1", "s3"]]
+    plan = tmp_path / "plan.json"
+    plan.write_text(
+        json.dumps({"format": "smash-plan/1", "instance": "figure1", "planner": "hand", "cost": 3, "actions": actions})
+    )
+    out = tmp_path / "plan.gif"
+    command = [sys.executable, "-m", "smash", "draw", "plan", str(EXAMPLES / "figure1.json"), str(plan)]
+    done = subprocess.run([*command, "--out", str(out)], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert out.read_bytes().startswith(MAGIC[".gif"])
