@@ -1,0 +1,110 @@
+"""The precedence bound of an instance, and the plan that meets it where one fits: what other planners build on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from time import perf_counter
+
+from smash.planners.precedence.graph import PrecedenceGraph, build_graph
+from smash.planners.precedence.hitting_set import HittingSet, HittingSetSolver
+from smash.planners.precedence.schedule import Scheduler, chosen_of
+from smash.problem.model import Action, Instance, PlanOptions
+
+ORIGIN = "precedence"
+"""The `bound_origin` of the bounds proven here."""
+
+
+@dataclass(frozen=True, slots=True)
+class PrecedenceBound:
+    """What the precedence graph says about an instance.
+
+    Attributes:
+        bound: no plan costs less.
+        relaxed_cost: cost of the cheapest choices found; with enough locations a plan of this cost exists.
+        actions: a plan of cost `relaxed_cost`, or None where none was found with the locations there are.
+        graph: the precedence graph.
+        hitting_set: the choices and the rows that they hit.
+    """
+
+    bound: int
+    relaxed_cost: int
+    actions: tuple[Action, ...] | None
+    graph: PrecedenceGraph
+    hitting_set: HittingSet
+
+    @property
+    def settled(self) -> bool:
+        """Whether `actions` is a proven optimum."""
+        return self.actions is not None and len(self.actions) <= self.bound
+
+
+def precedence_bound(
+    instance: Instance,
+    options: PlanOptions,
+    deadline: float,
+    on_plan: Callable[[Sequence[Action]], object] | None = None,
+    threads: int = 1,
+    on_no_plan: Callable[[], object] | None = None,
+) -> PrecedenceBound:
+    """Bound the cost of every plan from below, and look for a plan that meets the bound.
+
+    The instance must be feasible (`smash.problem.feasibility`). Returns within a few milliseconds of
+    `deadline`, with a valid bound in any case.
+
+    Args:
+        instance: the problem, of any goal kind.
+        options: topple or not, and its cap.
+        deadline: when to stop, in seconds of `time.perf_counter`.
+        on_plan: called with every better plan at once.
+        threads: the solver's threads.
+        on_no_plan: called once, as soon as the first choices do not fit the locations there are.
+    """
+    graph = build_graph(instance, options)
+    plans = _Plans(instance, options, graph, deadline, on_plan, on_no_plan)
+    found = HittingSetSolver(graph, threads).solve(deadline, plans.offer)
+    plans.offer(found.chosen, last=True)
+    relaxed = graph.base_cost + sum(graph.choices[choice].cost for choice in found.chosen)
+    return PrecedenceBound(graph.base_cost + found.bound, relaxed, plans.best, graph, found)
+
+
+class _Plans:
+    """Schedules the choices that come in; scheduling takes no more than a small share of the time so far."""
+
+    def __init__(
+        self,
+        instance: Instance,
+        options: PlanOptions,
+        graph: PrecedenceGraph,
+        deadline: float,
+        on_plan: Callable[[Sequence[Action]], object] | None,
+        on_no_plan: Callable[[], object] | None,
+    ) -> None:
+        self.instance = instance
+        self.options = options
+        self.graph = graph
+        self.deadline = deadline
+        self.on_plan = on_plan
+        self.on_no_plan = on_no_plan
+        self.best: tuple[Action, ...] | None = None
+        self._scheduled: set[int] | None = None
+        self._idle_until = 0.0
+
+    def offer(self, chosen: set[int], last: bool = False) -> None:
+        """Schedule a choice, unless scheduling the one before took long and this is not the `last`."""
+        started = perf_counter()
+        if chosen == self._scheduled or (started < self._idle_until and not last):
+            return
+        self._scheduled = set(chosen)
+        graph = self.graph
+        scheduler = Scheduler(self.instance, graph.demands, chosen_of(graph.choices, chosen), self.options.max_topple)
+        limit = self.deadline if last else min(self.deadline, started + 0.2)
+        actions = scheduler.plan(limit)
+        self._idle_until = perf_counter() + 5 * (perf_counter() - started)
+        if actions is None and self.best is None and self.on_no_plan is not None:
+            self.on_no_plan()
+            self.on_no_plan = None
+        if actions is not None and (self.best is None or len(actions) < len(self.best)):
+            self.best = actions
+            if self.on_plan is not None:
+                self.on_plan(actions)
