@@ -17,6 +17,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "validate": ("smash.cli.validate", "judge a plan by the law"),
     "planners": ("smash.cli.planners", "list the planners, what they support and what is missing"),
     "draw": ("smash.cli.draw", "draw a gadget, an instance, or a plan as moving pebbles"),
+    "sweep": ("smash.cli.sweep", "run an experiment file: planners, instances, budgets, buffers, variants"),
 }
 """Subcommand -> (module that holds a click command called `command`, one line of help)."""
 

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import math
 import os
-import signal
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from threading import Event
 
 import click
 
 from smash.cli import fail
+from smash.cli.signals import stopped_by_signals
 from smash.experiments.isolation import run_isolated
 from smash.experiments.job import DEFAULT_MEMORY, Job, Report
 from smash.planners.protocol import OnIncumbent, SolveOptions
@@ -77,7 +76,7 @@ def command(
         raise click.BadParameter("nan is no number of seconds", param_hint="--budget")
     if out is not None and not os.access(out.parent, os.W_OK):
         raise MalformedFile(str(out), "cannot be written: its directory is missing or closed")
-    with _stopped_by_signals() as stop, _progress(planner) as tell:
+    with stopped_by_signals() as stop, _progress(planner) as tell:
         report = run_isolated(job, tell, stop)
     _write(report, job, out)
     _end(report, f"{instance}: planner {planner!r}")
@@ -105,19 +104,6 @@ def _end(report: Report, who: str) -> None:
         fail(f"{who}: {words}", report.exit_code)
     if report.outcome == "over-budget":
         print(f"smash: {who}: {words}; its best plan is kept", file=sys.stderr)
-
-
-@contextmanager
-def _stopped_by_signals() -> Iterator[Event]:
-    """Turn Ctrl-C and a polite kill into an event, so that what was found is still written."""
-    stop = Event()
-    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-    before = [signal.signal(number, lambda *_: stop.set()) for number in numbers]
-    try:
-        yield stop
-    finally:
-        for number, handler in zip(numbers, before, strict=True):
-            signal.signal(number, handler)
 
 
 @contextmanager

@@ -1,0 +1,112 @@
+"""`smash sweep EXPERIMENT.toml`: run an experiment, here or on a Dask cluster."""
+
+from __future__ import annotations
+
+import shutil
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from threading import Event
+from typing import Any
+
+import click
+
+from smash.cli.signals import stopped_by_signals
+from smash.experiments.display import Progress
+from smash.experiments.environment import commit
+from smash.experiments.experiment import Experiment, Run, experiment_runs, not_installed, read_experiment
+from smash.experiments.records import Records
+from smash.experiments.sweep import execute, local_task, sweep
+from smash.problem.errors import SmashError, Unsupported
+
+
+@click.command("sweep")
+@click.argument("experiment", type=click.Path(path_type=Path))
+@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Runs at a time (default: the file's `jobs`).")
+@click.option("--dask", metavar="ADDRESS", help="Run on the Dask scheduler at this address (tcp://host:8786).")
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Default: runs/NAME-OF-EXPERIMENT.")
+@click.option("--dry-run", is_flag=True, help="Check the file, say how many runs it means and how long at most.")
+def command(experiment: Path, jobs: int | None, dask: str | None, out: Path | None, dry_run: bool) -> None:
+    r"""Do every run of EXPERIMENT.toml and record each as one line of OUT/runs.jsonl.
+
+    It may be stopped or killed at any moment: start it again and it does what is left.
+
+    \b
+    Examples:
+      smash sweep experiments/ablation.toml --jobs 2
+      smash sweep experiments/ablation-full.toml --dask tcp://head:8786 --out runs/full
+    """
+    read = read_experiment(experiment)
+    runs = installed_runs(read, experiment.parent)
+    out = out or Path("runs") / read.name
+    width = jobs or read.jobs
+    if dry_run:
+        hours = sum(run.job.budget for run in runs) / width / 3600
+        click.echo(f"{len(runs)} runs, at most {hours:.1f} h with {width} at a time, to be recorded in {out}")
+        return
+    run_all(runs, out, width, dask, experiment)
+
+
+def installed_runs(experiment: Experiment, base: Path) -> list[Run]:
+    """Return the experiment's runs; those of planners that are not installed here are left out, which is said."""
+    lacking = not_installed(experiment)
+    runs = experiment_runs(experiment, base)
+    for name, reason in lacking.items():
+        count = sum(run.job.planner == name for run in runs)
+        click.echo(f"{reason}; its {count} runs are left out, start again when it is there", err=True)
+    return [run for run in runs if run.job.planner not in lacking]
+
+
+def run_all(runs: list[Run], out: Path, jobs: int, dask: str | None, experiment: Path | None = None) -> None:
+    """Do what is left of `runs`, recorded in `out`, and say how it went.
+
+    Raises:
+        SmashError: where the directory is in use or damaged, the scheduler cannot be reached, or it was interrupted.
+    """
+    with stopped_by_signals() as stop, Records(out) as records:
+        if experiment is not None:
+            shutil.copyfile(experiment, out / "experiment.toml")
+        kept = sum(run.key in records.finished for run in runs)
+        _say_state(records, runs, kept)
+        if kept < len(runs):
+            _sweep(runs, records, kept, jobs, dask, stop)
+    click.echo(f"{len(runs)} runs recorded in {out / 'runs.jsonl'}")
+
+
+def _say_state(records: Records, runs: list[Run], kept: int) -> None:
+    if records.set_aside:
+        click.echo(f"the last line of {records.path} was damaged: set aside, its run is done again", err=True)
+    if kept:
+        old = sum(records.commits.get(run.key, commit()["hash"]) != commit()["hash"] for run in runs)
+        mixed = f" ({old} of them made by another commit)" if old else ""
+        click.echo(f"{kept} of {len(runs)} runs were finished before and are kept{mixed}", err=True)
+    others = len(records.finished) - kept
+    if others:
+        click.echo(f"{others} records there belong to other experiments", err=True)
+
+
+def _sweep(runs: list[Run], records: Records, kept: int, jobs: int, dask: str | None, stop: Event) -> None:
+    if dask is None:
+        with (
+            Progress(len(runs), kept, jobs, pool_begins=True) as progress,
+            ThreadPoolExecutor(jobs) as executor,
+        ):
+            sweep(runs, records, executor, local_task(stop, progress), progress, stop)
+        return
+    client = _client(dask)
+    try:
+        width = sum(client.nthreads().values())
+        with Progress(len(runs), kept, width, pool_begins=False) as progress:
+            sweep(runs, records, client.get_executor(pure=False), execute, progress, stop)
+    finally:
+        client.close()
+
+
+def _client(address: str) -> Any:
+    try:
+        from distributed import Client
+    except ImportError:
+        raise Unsupported("Dask is not installed: pip install 'smash-testbed[cluster]'") from None
+    try:
+        return Client(address, timeout=15)
+    except (OSError, ValueError) as error:
+        raise SmashError(f"--dask {address}: no scheduler answers there ({error})") from None

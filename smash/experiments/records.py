@@ -1,0 +1,156 @@
+"""Records: `runs.jsonl`, one `smash-run/1` object a line, on disk as each run ends; resumed after any kill."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from smash.experiments.environment import commit, load, machine, versions
+from smash.experiments.experiment import Run, instance_hash
+from smash.experiments.job import Report
+from smash.problem.errors import MalformedFile, SmashError
+from smash.problem.files import instance_document, plan_document
+
+RUN_FORMAT = "smash-run/1"
+RUNS = "runs.jsonl"
+DAMAGED = "runs.damaged"
+
+
+class InUse(SmashError):
+    """Another sweep is writing to the same directory."""
+
+
+def record_of(run: Run, report: Report, started: datetime, load_before: float) -> dict[str, Any]:
+    """Return the `smash-run/1` object of a finished run: the plan's fields, and all that it took to make it."""
+    job = run.job
+    document = plan_document(report.plan(job))
+    del document["format"]
+    verdict = report.verdict
+    return {
+        "format": RUN_FORMAT,
+        "key": run.key,
+        "experiment": run.experiment,
+        "label": run.label,
+        "suite": run.suite,
+        "variant": run.variant,
+        "kind": run.kind,
+        **document,
+        "outcome": report.outcome,
+        "reason": report.reason,
+        "verdict": None
+        if verdict is None
+        else {"accepted": verdict.accepted, "reason": verdict.reason, "step": verdict.step},
+        "budget": job.budget,
+        "budgets": list(run.budgets),
+        "memory_limit_mib": job.memory,
+        "warm_start": job.options.warm_start,
+        "horizon": job.options.horizon,
+        "threads": job.options.threads,
+        "seed": job.options.seed,
+        "blocks": len(job.instance.blocks),
+        "stacks": len(job.instance.stacks),
+        "buffers": len(job.instance.buffers),
+        "instance_hash": instance_hash(job.instance),
+        "instance_document": instance_document(job.instance),
+        "wall_seconds": report.wall_seconds,
+        "cpu_seconds": report.cpu_seconds,
+        "memory_mib": report.memory_mib,
+        "details": report.details,
+        "log": report.log if report.outcome in ("crashed", "memory", "refused") else "",
+        "started": started.astimezone(UTC).isoformat(timespec="milliseconds"),
+        "load_average": [load_before, load()],
+        "versions": versions(job.planner),
+        "commit": commit(),
+        "machine": machine(),
+    }
+
+
+class Records:
+    """The records of one directory, open for one writer; what an earlier sweep finished is kept.
+
+    Raises:
+        InUse: where another sweep has it open.
+        MalformedFile: where the file is damaged elsewhere than in its last line, or cannot be written.
+    """
+
+    def __init__(self, directory: Path) -> None:
+        self.path = directory / RUNS
+        self.set_aside = 0
+        try:
+            directory.mkdir(parents=True, exist_ok=True)
+            self._lock = open(directory / ".lock", "w")  # noqa: SIM115 - held until close
+            self._file = open(self.path, "a+b")  # noqa: SIM115
+        except OSError as error:
+            raise MalformedFile(str(directory), f"cannot be written: {error.strerror}") from None
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise InUse(f"{directory}: another sweep is writing there; wait for it, or give another --out") from None
+        self._repair(directory / DAMAGED)
+        self.commits = {record["key"]: (record.get("commit") or {}).get("hash") for record in read_records(self.path)}
+        self.finished = set(self.commits)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._file.close()
+        self._lock.close()
+
+    def append(self, record: dict[str, Any]) -> None:
+        """Write one record and have it on disk before this returns; nothing is written twice.
+
+        Raises:
+            MalformedFile: where it cannot be written (a full disk).
+        """
+        if record["key"] in self.finished:
+            return
+        try:
+            self._file.write(json.dumps(record).encode() + b"\n")
+            self._file.flush()
+            os.fsync(self._file.fileno())
+        except OSError as error:
+            raise MalformedFile(str(self.path), f"cannot be written: {error.strerror}") from None
+        self.finished.add(record["key"])
+
+    def _repair(self, damaged: Path) -> None:
+        """Move a last line that a kill left half-written to a file of its own."""
+        self._file.seek(0)
+        content = self._file.read()
+        end = content.rstrip(b"\n").rfind(b"\n") + 1
+        last = content[end:]
+        if not last or (last.endswith(b"\n") and _is_record(last)):
+            return
+        with open(damaged, "ab") as aside:
+            aside.write(last.rstrip(b"\n") + b"\n")
+        self._file.truncate(end)
+        self.set_aside = 1
+
+
+def read_records(path: Path) -> Iterator[dict[str, Any]]:
+    """Yield the records of a `runs.jsonl`.
+
+    Raises:
+        MalformedFile: where a line is no `smash-run/1` object.
+    """
+    with open(path, "rb") as lines:
+        for number, line in enumerate(lines, start=1):
+            if not _is_record(line):
+                raise MalformedFile(f"{path}:{number}", f"no {RUN_FORMAT} object; set the line aside and sweep again")
+            yield json.loads(line)
+
+
+def _is_record(line: bytes) -> bool:
+    try:
+        record = json.loads(line)
+    except ValueError:
+        return False
+    return isinstance(record, dict) and record.get("format") == RUN_FORMAT and isinstance(record.get("key"), str)

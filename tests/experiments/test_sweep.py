@@ -1,0 +1,170 @@
+"""Sweeps: recorded as they end, resumed after any kill, exactly once, by one process at a time."""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from contextlib import suppress
+
+import psutil
+import pytest
+
+from smash.experiments.records import DAMAGED, RUNS, InUse, Records
+from smash.problem import MalformedFile
+
+pytestmark = pytest.mark.usefixtures("third_party")
+
+HEAD = 'name = "try"\nsuites = ["."]\nvariants = ["topple"]\nbudgets = [0.3]\n'
+
+
+@pytest.fixture
+def experiment(tower_file, tmp_path):
+    """Write an experiment over `count` copies of the tower."""
+
+    def write(planners, count=1, head=HEAD):
+        suite = tmp_path / "suite"
+        suite.mkdir(exist_ok=True)
+        tower = json.loads(tower_file.read_text())
+        for number in range(count):
+            (suite / f"{number}.json").write_text(json.dumps({**tower, "name": f"tower-{number}"}))
+        file = suite / "experiment.toml"
+        file.write_text(head + "".join(f'[[planners]]\nname = "{planner}"\n' for planner in planners))
+        return file
+
+    return write
+
+
+def command(file, out, *more):
+    return [sys.executable, "-m", "smash", "sweep", str(file), "--out", str(out), *map(str, more)]
+
+
+def sweep(file, out, *more):
+    return subprocess.run(command(file, out, *more), capture_output=True, text=True, timeout=100)
+
+
+def records(out):
+    return [json.loads(line) for line in (out / RUNS).read_text().splitlines()]
+
+
+def left_behind(mark):
+    found = []
+    for process in psutil.process_iter():
+        with suppress(psutil.Error, OSError):
+            if process.environ().get("MARKED") == mark and process.pid != os.getpid():
+                found.append(process)
+    return found
+
+
+def test_every_kind_of_trouble_is_a_recorded_outcome(experiment, tmp_path, monkeypatch):
+    monkeypatch.setenv("MARKED", str(tmp_path))
+    ends = {
+        "sound": "optimal",
+        "raises": "crashed",
+        "segfaults": "crashed",
+        "exits": "crashed",
+        "leaves-children": "over-budget",
+        "eats-memory": "memory",
+        "cheats": "refused",
+        "declines": "unsupported",
+    }
+    ended = sweep(experiment(ends, head="memory = 250\n" + HEAD.replace("0.3", "2")), tmp_path / "out", "--jobs", 4)
+    assert ended.returncode == 0, ended.stderr
+    assert {record["planner"]: record["outcome"] for record in records(tmp_path / "out")} == ends
+    assert not left_behind(str(tmp_path))
+
+
+def test_a_record_says_what_ran_where_and_how_it_ended(experiment, tmp_path):
+    sweep(experiment(["sound"]), tmp_path / "out")
+    (record,) = records(tmp_path / "out")
+    assert record["format"] == "smash-run/1"
+    assert record["cost"] == len(record["actions"]) == 3
+    assert [cost for _, cost, _ in record["incumbents"]] == [9, 5, 3]
+    assert record["verdict"] == {"accepted": True, "reason": "", "step": None}
+    assert record["versions"]["troubled"] == "1.0"
+    assert record["versions"]["python"].startswith("3.")
+    assert record["machine"]["cores"] >= 1
+    assert record["memory_mib"] > 1
+    assert {"hash", "dirty"} == set(record["commit"])
+
+
+def test_a_planner_that_is_not_installed_is_said_and_left_for_later(experiment, tmp_path):
+    ended = sweep(experiment(["bare", "lacks"]), tmp_path / "out")
+    assert "pip install luck; its 1 runs are left out" in ended.stderr
+    assert [record["planner"] for record in records(tmp_path / "out")] == ["bare"]
+
+
+@pytest.mark.parametrize("kills", [2, pytest.param(10, marks=pytest.mark.slow)])
+def test_killed_at_random_moments_it_loses_nothing_and_repeats_nothing(experiment, tmp_path, monkeypatch, kills):
+    monkeypatch.setenv("MARKED", str(tmp_path))
+    file, out = experiment(["hangs-with-plan", "sound"], count=2 * kills), tmp_path / "out"
+    seen = set()
+    for moment in random.Random(5).choices([0.4, 0.7, 1.0, 1.3], k=kills):
+        running = subprocess.Popen(command(file, out, "--jobs", 2), stderr=subprocess.DEVNULL)
+        time.sleep(moment)
+        running.send_signal(signal.SIGKILL)
+        running.wait()
+        if (out / RUNS).exists():
+            now = {line for line in (out / RUNS).read_text().splitlines(keepends=True) if line.endswith("\n")}
+            assert seen <= now
+            seen = now
+    ended = sweep(file, out, "--jobs", 4)
+    assert ended.returncode == 0, ended.stderr
+    assert seen <= set((out / RUNS).read_text().splitlines(keepends=True))
+    keys = [record["key"] for record in records(out)]
+    assert len(keys) == len(set(keys)) == 4 * kills
+    assert not left_behind(str(tmp_path))
+
+
+def test_an_interrupted_sweep_says_so_and_goes_on_later(experiment, tmp_path):
+    file, out = experiment(["hangs"], count=4), tmp_path / "out"
+    running = subprocess.Popen(command(file, out), stderr=subprocess.PIPE, text=True)
+    while not ((out / RUNS).exists() and (out / RUNS).read_text()):
+        time.sleep(0.05)
+    running.send_signal(signal.SIGINT)
+    _, said = running.communicate(timeout=20)
+    assert running.returncode == 130
+    assert "start again" in said.splitlines()[-1]
+    assert 1 <= len(records(out)) < 4
+
+
+def test_a_damaged_last_line_is_set_aside_and_its_run_done_again(experiment, tmp_path):
+    file, out = experiment(["bare"], count=2), tmp_path / "out"
+    sweep(file, out)
+    whole = (out / RUNS).read_bytes()
+    (out / RUNS).write_bytes(whole[:-40])
+    ended = sweep(file, out)
+    assert "damaged: set aside" in ended.stderr
+    assert "1 of 2 runs were finished before" in ended.stderr
+    assert len(records(out)) == 2
+    assert (out / DAMAGED).read_bytes().strip() in whole
+
+
+def test_damage_elsewhere_is_refused_with_its_line(tmp_path):
+    (tmp_path / RUNS).write_text('{"half\n{"format": "smash-run/1", "key": "a"}\n')
+    with pytest.raises(MalformedFile, match=r"runs\.jsonl:1"):
+        Records(tmp_path)
+
+
+def test_two_sweeps_on_one_directory_are_refused(experiment, tmp_path):
+    with Records(tmp_path / "out"):
+        with pytest.raises(InUse):
+            Records(tmp_path / "out")
+        ended = sweep(experiment(["bare"]), tmp_path / "out")
+    assert ended.returncode == 2
+    assert ended.stderr.count("\n") == 1
+
+
+def test_nothing_runs_where_the_file_is_bad(experiment, tmp_path):
+    ended = sweep(experiment(["nobody"]), tmp_path / "out")
+    assert ended.returncode == 2
+    assert ended.stderr.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_no_scheduler_at_the_address_is_one_line(experiment, tmp_path):
+    ended = sweep(experiment(["bare"]), tmp_path / "out", "--dask", "nonsense://x")
+    assert ended.returncode == 2
+    assert ended.stderr.count("\n") == 1
