@@ -16,6 +16,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "plan": ("smash.cli.plan", "plan one instance and print or write the plan"),
     "validate": ("smash.cli.validate", "judge a plan by the law"),
     "planners": ("smash.cli.planners", "list the planners, what they support and what is missing"),
+    "import-blocks": ("smash.cli.import_blocks", "turn a blocks-world problem in PDDL into an instance"),
     "draw": ("smash.cli.draw", "draw a gadget, an instance, or a plan as moving pebbles"),
     "sweep": ("smash.cli.sweep", "run an experiment file: planners, instances, budgets, buffers, variants"),
 }

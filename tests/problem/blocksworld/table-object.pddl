@@ -1,0 +1,5 @@
+(define (problem table-object)
+  (:domain blocks3)
+  (:objects a b table)
+  (:init (block a) (block b) (on a b) (on b table) (clear a) (clear table))
+  (:goal (on b a)))
