@@ -1,0 +1,119 @@
+"""What all PDDL baselines share: compile, run an engine within the budget, read its plans back through the law."""
+
+from __future__ import annotations
+
+import tempfile
+from abc import abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from time import monotonic
+from typing import Any, ClassVar
+
+from baselines.encodings import unsupported_reason
+from baselines.facts import trim_buffers
+from baselines.outcomes import Outcome
+from baselines.process import MEMORY_LIMIT
+from baselines.steps import Step, actions_of
+from baselines.task import PddlTask, compile_instance
+from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
+from smash.problem.errors import IllegalAction, PlannerCrashed, Unsupported
+from smash.problem.model import Instance, State
+from smash.problem.rules import Law
+
+
+@dataclass(slots=True)
+class Run:
+    """One run of an engine on one task: its limits, the plans that it reports, what it measures."""
+
+    task: PddlTask
+    log: IncumbentLog
+    origin: str
+    directory: Path
+    deadline: float
+    memory: int
+    lower_bound: int | None = None
+    infeasible: bool = False
+    details: dict[str, Any] = field(default_factory=dict)
+
+    def offer(self, steps: Iterable[Step]) -> None:
+        """Take a plan of the engine; one that does not fit the encoding or the law is recorded as refused."""
+        try:
+            self.log.offer(actions_of(steps, self.task), self.origin)
+        except IllegalAction as error:
+            self.log.refusals.append(f"{self.origin}: {error}")
+
+    def raise_bound(self, bound: int) -> None:
+        """Take a lower bound that the engine proved."""
+        self.lower_bound = max(bound, self.lower_bound or 0)
+
+
+class EnginePlanner(BasePlanner):
+    """A planner that hands the compiled problem to an engine outside of this process."""
+
+    name: ClassVar[str]
+    """The engine's name in incumbents and bounds."""
+    encoding: ClassVar[str]
+    """How topples are told to it: `conditional` or `chain`."""
+
+    def __init__(self, memory: int = MEMORY_LIMIT) -> None:
+        """Make the planner.
+
+        Args:
+            memory: limit for all processes of the engine together [bytes].
+        """
+        self.memory = memory
+
+    def unsupported(self, instance: Instance, options: SolveOptions) -> str | None:
+        """Return why the encoding cannot say the problem, or None."""
+        return unsupported_reason(instance, options, self.encoding)
+
+    def solve(
+        self,
+        instance: Instance,
+        options: SolveOptions,
+        budget: float,
+        on_incumbent: OnIncumbent | None = None,
+    ) -> PlanResult:
+        """Plan for at most `budget` seconds, compilation and the engine's translation included.
+
+        Raises:
+            Unsupported: where the encoding or the engine cannot take the problem.
+            PlannerCrashed: where the engine ends abnormally or at its memory limit without a plan.
+        """
+        deadline = monotonic() + budget
+        log = IncumbentLog(instance, options, on_incumbent)
+        if Law(instance, options).goal_shortfall(State.start_of(instance)) is None:
+            log.offer((), "start")
+            return log.result(lower_bound=0, bound_origin="start")
+        task = compile_instance(trim_buffers(instance), options, self.encoding)
+        with tempfile.TemporaryDirectory(prefix="smash-", ignore_cleanup_errors=True) as folder:
+            run = Run(task, log, self.name, Path(folder), deadline, self.memory)
+            run.details["encoding"] = task.encoding.file
+            run.details["compile_seconds"] = round(log.elapsed, 4)
+            outcome = self.run(run)
+        return self._result(run, outcome)
+
+    @abstractmethod
+    def run(self, run: Run) -> Outcome:
+        """Run the engine: offer its plans and bounds to `run` as they come, and say how it ended."""
+
+    def _result(self, run: Run, outcome: Outcome) -> PlanResult:
+        run.details["outcome"] = outcome.text
+        if run.log.refusals:
+            run.details["refused"] = list(run.log.refusals)
+        if run.log.best is None and outcome.kind in ("memory", "crashed"):
+            raise PlannerCrashed(f"{self.name}: {outcome.text}{_last_words(run)}")
+        if run.log.best is None and outcome.kind == "unsupported":
+            raise Unsupported(f"{self.name}: {outcome.text}")
+        return run.log.result(
+            lower_bound=run.lower_bound,
+            bound_origin=self.name,
+            infeasible=run.infeasible,
+            details=run.details,
+        )
+
+
+def _last_words(run: Run) -> str:
+    words = run.details.get("last_words")
+    return f" ({words})" if words else ""

@@ -1,0 +1,96 @@
+"""An instance as PDDL facts: objects, initial facts and goal facts of one encoding."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+from baselines.encodings import CHAIN, CHAIN_CAPPED, CONDITIONAL, Encoding, cap_of
+from baselines.names import Names, count_names
+from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal
+
+Fact = tuple[str, ...]
+"""A predicate and its arguments, by PDDL names: `("on", "b02", "b01")`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """A PDDL problem without its syntax: objects by type, what holds at the start, what must hold at the end."""
+
+    objects: dict[str, tuple[str, ...]]
+    start: tuple[Fact, ...]
+    goal: tuple[Fact, ...]
+
+
+def trim_buffers(instance: Instance) -> Instance:
+    """Return an equivalent instance without the buffers that no plan can need.
+
+    Never more piles than blocks stand at once, so the buffers used at the start and as many more as there are
+    blocks in all suffice; the others only make planners slow.
+    """
+    used = [buffer for buffer in instance.buffers if instance.start.get(buffer)]
+    spare = [buffer for buffer in instance.buffers if not instance.start.get(buffer)]
+    kept = {*used, *spare[: max(0, len(instance.blocks) - len(used))]}
+    buffers = tuple(buffer for buffer in instance.buffers if buffer in kept)
+    start = {location: instance.start.get(location, ()) for location in instance.stacks + buffers}
+    return replace(instance, buffers=buffers, start=start)
+
+
+def facts_of(instance: Instance, options: PlanOptions, encoding: Encoding, names: Names) -> Facts:
+    """Return the facts of an instance in one encoding."""
+    cap = cap_of(instance, options) if encoding.capped else None
+    counts = count_names(max(len(instance.buffers), 0 if cap is None else cap - 1))
+    start: list[Fact] = [("hand-empty",)]
+    start += _piles(instance, encoding, names)
+    start += [("on-table", names.blocks[block]) for block in instance.table]
+    free = sum(not instance.start.get(buffer) for buffer in instance.buffers)
+    start.append(("free-buffers", counts[free]))
+    if cap is not None:
+        start.append(("cap", counts[cap - 1]))
+    start += [("next", counts[k], counts[k + 1]) for k in range(len(counts) - 1)]
+    objects = {
+        "block": tuple(names.blocks.values()),
+        "location": tuple(names.locations.values()),
+        "count": tuple(counts),
+    }
+    return Facts(objects, tuple(start), (*_goal(instance, names), ("hand-empty",)))
+
+
+def _piles(instance: Instance, encoding: Encoding, names: Names) -> Iterator[Fact]:
+    for location in instance.locations:
+        pile = [names.blocks[block] for block in instance.start.get(location, ())]
+        stack = names.locations.get(location)
+        if not pile:
+            if stack is not None:
+                yield ("empty", stack)
+            continue
+        yield ("on-buffer", pile[0]) if stack is None else ("base", pile[0], stack)
+        yield ("bottom", pile[0])
+        yield from (("on", upper, under) for under, upper in pairwise(pile))
+        region = "buffers" if stack is None else "stacks"
+        yield ("top", pile[-1], region) if encoding in (CHAIN, CHAIN_CAPPED) else ("top", pile[-1])
+        if encoding is CONDITIONAL:
+            yield from (("stacked", block) for block in pile)
+            yield from (("above", pile[i], pile[j]) for i in range(len(pile)) for j in range(i))
+            if stack is not None:
+                yield from (("above", block, "stacks") for block in pile)
+
+
+def _goal(instance: Instance, names: Names) -> Iterator[Fact]:
+    """Yield what the goal asks for; with every block placed, empty locations and table follow of themselves."""
+    match instance.goal:
+        case StacksGoal(piles):
+            yield from _goal_piles(piles, names)
+        case PositionsGoal() as goal:
+            yield from _goal_piles(goal.stacks(), names)
+        case OnGoal(on, bottom):
+            yield from (("on", names.blocks[upper], names.blocks[under]) for upper, under in on.items())
+            yield from (("bottom", names.blocks[block]) for block in bottom)
+
+
+def _goal_piles(piles: Mapping[str, tuple[str, ...]], names: Names) -> Iterator[Fact]:
+    for location, pile in piles.items():
+        if pile:
+            yield ("base", names.blocks[pile[0]], names.locations[location])
+        yield from (("on", names.blocks[upper], names.blocks[under]) for under, upper in pairwise(pile))

@@ -1,0 +1,82 @@
+"""The PDDL baselines behind the planner protocol, as the entry points name them."""
+
+from __future__ import annotations
+
+from baselines.configurations import IPDB, LAMA, LAMA_FIRST, LMCUT, SYMBOLIC
+from baselines.downward import DownwardPlanner
+
+__all__ = [
+    "FdLama",
+    "FdLamaChain",
+    "FdLamaConditional",
+    "FdLamaFirst",
+    "FdOpt",
+    "FdOptIpdb",
+    "SymkOpt",
+]
+
+
+class FdLama(DownwardPlanner):
+    """Fast Downward's LAMA, anytime, on the conditional encoding."""
+
+    summary = "Fast Downward LAMA, anytime; topple as one action with conditional effects"
+    name = "fd-lama"
+    encoding = "conditional"
+    configuration = LAMA
+
+
+class FdLamaConditional(FdLama):
+    """The same under its full name."""
+
+    name = "fd-lama:conditional"
+
+
+class FdLamaChain(FdLama):
+    """LAMA on the STRIPS chain encoding."""
+
+    summary = "Fast Downward LAMA, anytime; topple as a chain of STRIPS actions"
+    name = "fd-lama:chain"
+    encoding = "chain"
+
+
+class FdLamaFirst(DownwardPlanner):
+    """LAMA's first iteration alone."""
+
+    summary = "Fast Downward LAMA, first plan only; topple as one action with conditional effects"
+    name = "fd-lama-first"
+    encoding = "conditional"
+    configuration = LAMA_FIRST
+    anytime = False
+
+
+class FdOpt(DownwardPlanner):
+    """A* with the landmark-cut heuristic."""
+
+    summary = "Fast Downward A* with LM-cut, optimal; topple as a chain of STRIPS actions"
+    name = "fd-opt"
+    encoding = "chain"
+    configuration = LMCUT
+    anytime = False
+    proves = True
+
+
+class FdOptIpdb(DownwardPlanner):
+    """A* with pattern databases found by hill climbing."""
+
+    summary = "Fast Downward A* with iPDB, optimal; topple as a chain of STRIPS actions"
+    name = "fd-opt-ipdb"
+    encoding = "chain"
+    configuration = IPDB
+    anytime = False
+    proves = True
+
+
+class SymkOpt(DownwardPlanner):
+    """Symbolic bidirectional search."""
+
+    summary = "SymK symbolic bidirectional search, optimal; topple as a chain of STRIPS actions"
+    name = "symk-opt"
+    encoding = "chain"
+    configuration = SYMBOLIC
+    anytime = False
+    proves = True

@@ -1,0 +1,82 @@
+"""The compiler: an instance to a PDDL domain and problem, as text that any planner reads."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from baselines.encodings import Encoding, encoding_for
+from baselines.facts import Fact, Facts, facts_of
+from baselines.names import Names
+from smash.problem.files import write_text
+from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal
+
+HEADER = ";; smash-names: "
+"""Before the line of JSON that says how the objects of a problem are called in the instance."""
+GOAL_KINDS = {StacksGoal: "stacks", PositionsGoal: "positions", OnGoal: "on"}
+
+
+@dataclass(frozen=True, slots=True)
+class PddlTask:
+    """An instance compiled to PDDL, with what is needed to read plans back."""
+
+    instance: Instance
+    options: PlanOptions
+    encoding: Encoding
+    names: Names
+    facts: Facts
+
+    @property
+    def domain_text(self) -> str:
+        """The domain, as it stands in `domains/`."""
+        return self.encoding.text
+
+    @property
+    def problem_text(self) -> str:
+        """The problem."""
+        objects = [f"    {' '.join(members)} - {kind}" for kind, members in self.facts.objects.items() if members]
+        lines = [
+            HEADER + json.dumps(_header(self.instance, self.names)),
+            "(define (problem smash)",
+            f"  (:domain {self.encoding.domain})",
+            "  (:objects\n" + "\n".join(objects) + ")",
+            "  (:init\n    (= (total-cost) 0)\n" + _fact_lines(self.facts.start) + ")",
+            "  (:goal (and\n" + _fact_lines(self.facts.goal) + "))",
+            "  (:metric minimize (total-cost)))",
+        ]
+        return "\n".join(lines) + "\n"
+
+    def write(self, directory: Path) -> tuple[Path, Path]:
+        """Write `domain.pddl` and `problem.pddl` into an existing directory and return their paths."""
+        domain, problem = directory / "domain.pddl", directory / "problem.pddl"
+        write_text(domain, self.domain_text)
+        write_text(problem, self.problem_text)
+        return domain, problem
+
+
+def compile_instance(instance: Instance, options: PlanOptions, wanted: str) -> PddlTask:
+    """Compile an instance; topples are told in the way `wanted` (`conditional` or `chain`).
+
+    Raises:
+        Unsupported: where that encoding cannot say the problem.
+    """
+    encoding = encoding_for(instance, options, wanted)
+    names = Names.of(instance)
+    return PddlTask(instance, options, encoding, names, facts_of(instance, options, encoding, names))
+
+
+def _fact_lines(facts: Iterable[Fact]) -> str:
+    return "\n".join(f"    ({' '.join(fact)})" for fact in facts)
+
+
+def _header(instance: Instance, names: Names) -> dict[str, object]:
+    return {
+        "instance": instance.name,
+        "goal": GOAL_KINDS[type(instance.goal)],
+        "blocks": dict(names.block_of),
+        "locations": dict(names.location_of),
+        "buffers": list(instance.buffers),
+        "on_buffers": {names.blocks[pile[0]]: at for at in instance.buffers if (pile := instance.start.get(at))},
+    }

@@ -1,0 +1,202 @@
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+from baselines import planners
+from baselines.planners import FdLama, FdLamaChain, FdLamaFirst, FdOpt, FdOptIpdb, SymkOpt
+from smash.planners.protocol import SolveOptions
+from smash.planners.registry import get_planner
+from smash.problem import Law, PlannerCrashed, PlanOptions, make_instance, read_instance
+from smash.problem.model import OnGoal, PositionsGoal, StacksGoal
+from smash.problem.suites import suite_files
+from tests.oracle import optimal_cost
+from tests.strategies import instances, plan_options
+
+FAST_DOWNWARD = [FdLama, FdLamaChain, FdLamaFirst, FdOpt, FdOptIpdb]
+PROVERS = [FdOpt, FdOptIpdb, SymkOpt]
+
+pytestmark = pytest.mark.skipif(FdOpt().missing() is not None, reason="Fast Downward is not installed")
+
+
+def figure_1():
+    """The paper's first figure: the block at the bottom of four must reach the empty location."""
+    return make_instance(
+        name="figure-1",
+        blocks=["a", "b", "c", "d"],
+        stacks=["s1", "g"],
+        buffers=["u1", "u2", "u3"],
+        start={"s1": ["a", "b", "c", "d"]},
+        goal=PositionsGoal({"a": ("g", 1)}),
+    )
+
+
+def solve(planner, instance, options=None, budget=20.0, **more):
+    return planner.solve(instance, options or SolveOptions(), budget, **more)
+
+
+@pytest.mark.parametrize("planner", [FdOpt, FdOptIpdb])
+def test_one_topple_saves_five_actions_in_figure_1(planner):
+    with_topple, without = solve(planner(), figure_1()), solve(planner(), figure_1(), SolveOptions(topple=False))
+    assert (with_topple.status, with_topple.cost, with_topple.bound_origin) == ("optimal", 3, planner.name)
+    assert (without.status, without.cost) == ("optimal", 8)
+
+
+def test_a_cap_costs_more_topples():
+    result = solve(FdOptIpdb(), figure_1(), SolveOptions(max_topple=2))
+    assert (result.status, result.cost) == ("optimal", 4)
+    assert FdLama().unsupported(figure_1(), SolveOptions(max_topple=2)) is not None
+    assert FdLama().unsupported(figure_1(), SolveOptions(max_topple=4)) is None
+
+
+def test_lama_reports_each_better_plan_at_once():
+    seen = []
+    instance = read_instance(suite_files("multi-6")[0])
+    result = solve(FdLama(), instance, budget=2.0, on_incumbent=lambda at, cost, actions: seen.append((at, cost)))
+    assert [(entry.seconds, entry.cost) for entry in result.incumbents] == seen
+    assert len(seen) > 1
+    assert [cost for _, cost in seen] == sorted({cost for _, cost in seen}, reverse=True)
+    assert result.status == "feasible"
+    assert result.lower_bound is None
+    assert result.details["translation_seconds"] > 0
+
+
+def test_a_start_that_holds_the_goal_needs_no_engine():
+    empty = make_instance(name="empty", blocks=[], stacks=["s"], start={}, goal=StacksGoal({}))
+    for planner in FAST_DOWNWARD:
+        result = solve(planner(), empty)
+        assert (result.status, result.actions) == ("optimal", ())
+
+
+def test_what_has_no_plan_is_proven_by_an_exhaustive_search_alone():
+    turned = make_instance(
+        name="turned", blocks=["a", "b"], stacks=["s"], start={"s": ["a", "b"]}, goal=StacksGoal({"s": ("b", "a")})
+    )
+    pick_and_place = SolveOptions(topple=False)
+    assert solve(FdOpt(), turned, pick_and_place).status == "infeasible"
+    assert solve(FdOptIpdb(), turned, pick_and_place).status == "infeasible"
+    assert solve(FdLama(), turned, pick_and_place, budget=3.0).status == "unknown"
+    assert solve(FdOpt(), turned).cost == 5
+
+
+def test_odd_names_starts_on_buffers_and_on_the_table():
+    odd = make_instance(
+        name="odd",
+        blocks=["", "quote'\"(", "größe"],
+        stacks=["größe", "x y"],
+        buffers=["", "(:init"],
+        start={"": ["größe"]},
+        table=["", "quote'\"("],
+        goal=OnGoal({"größe": "", "": "quote'\"("}, ("quote'\"(",)),
+    )
+    for planner in FAST_DOWNWARD:
+        result = solve(planner(), odd, budget=2.0)
+        assert Law(odd).check(result.actions).accepted
+        assert result.cost == 6
+
+
+@pytest.mark.parametrize("planner", [FdLama, FdOpt])
+def test_the_budget_is_wall_time_and_holds(planner):
+    instance = read_instance(suite_files("multi-9")[1])
+    started = time.monotonic()
+    result = solve(planner(), instance, SolveOptions(topple=False), budget=1.0)
+    assert time.monotonic() - started < 1.5
+    assert result.status in ("feasible", "unknown")
+    assert result.details["outcome"] == "budget spent"
+
+
+def test_a_lower_bound_stands_when_the_budget_ends_first():
+    instance = read_instance(suite_files("multi-9")[1])
+    result = solve(FdOpt(), instance, SolveOptions(topple=False), budget=1.5)
+    assert result.status == "unknown"
+    assert 10 < result.lower_bound <= 40
+    assert result.bound_origin == "fd-opt"
+
+
+def test_a_memory_limit_is_a_crash_with_a_name():
+    with pytest.raises(PlannerCrashed, match="memory"):
+        solve(FdOpt(memory=30 << 20), read_instance(suite_files("multi-9")[0]))
+
+
+SLEEPER = """
+import sys
+from baselines.planners import FdLama
+from smash.planners.protocol import SolveOptions
+from smash.problem import read_instance
+print("started", flush=True)
+FdLama().solve(read_instance(sys.argv[1]), SolveOptions(), 60, lambda *_: print("plan", flush=True))
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+def test_killing_the_caller_leaves_no_engine(number):
+    caller = subprocess.Popen(
+        [sys.executable, "-c", SLEEPER, str(suite_files("multi-9")[0])],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(Path(planners.__file__).parents[1])},
+    )
+    assert caller.stdout.readline() == "started\n"
+    assert caller.stdout.readline() == "plan\n"
+    engines = psutil.Process(caller.pid).children(recursive=True)
+    assert engines
+    caller.send_signal(number)
+    caller.communicate(timeout=10)
+    _, alive = psutil.wait_procs(engines, timeout=3)
+    assert not alive
+
+
+def test_the_registry_knows_the_baselines():
+    for name in (
+        "fd-lama",
+        "fd-lama:conditional",
+        "fd-lama:chain",
+        "fd-lama-first",
+        "fd-opt",
+        "fd-opt-ipdb",
+        "symk-opt",
+    ):
+        assert get_planner(name).summary
+
+
+def assert_optimal(planner, instance, options, budget=30.0):
+    solve_options = SolveOptions(options.topple, options.max_topple)
+    result = solve(planner, instance, solve_options, budget)
+    best = optimal_cost(instance, options)
+    assert not result.details.get("refused")
+    assert (result.status, result.cost) == (("infeasible", None) if best is None else ("optimal", best))
+
+
+@settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(instances(max_blocks=3), plan_options())
+def test_ipdb_proves_the_exhaustive_optimum(instance, options):
+    assert_optimal(FdOptIpdb(), instance, options)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("planner", PROVERS)
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(instances(max_blocks=5), plan_options())
+def test_every_prover_finds_the_exhaustive_optimum(planner, instance, options):
+    assert_optimal(planner(), instance, options)
+
+
+@pytest.mark.slow
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(instances(max_blocks=4), plan_options())
+def test_lama_never_beats_the_optimum_and_its_plans_are_legal(instance, options):
+    for planner in (FdLama(), FdLamaChain()):
+        solve_options = SolveOptions(options.topple, options.max_topple)
+        if planner.unsupported(instance, solve_options):
+            continue
+        result = solve(planner, instance, solve_options, 1.0)
+        best = optimal_cost(instance, PlanOptions(options.topple, options.max_topple))
+        assert not result.details.get("refused")
+        assert (result.cost is None) if best is None else (result.cost is None or result.cost >= best)
