@@ -15,6 +15,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "generate": ("smash.cli.generate", "make random benchmark instances (single-goal, multi-goal)"),
     "plan": ("smash.cli.plan", "plan one instance and print or write the plan"),
     "validate": ("smash.cli.validate", "judge a plan by the law"),
+    "export-pddl": ("smash.cli.export_pddl", "write an instance as PDDL for any planner outside"),
     "planners": ("smash.cli.planners", "list the planners, what they support and what is missing"),
     "import-blocks": ("smash.cli.import_blocks", "turn a blocks-world problem in PDDL into an instance"),
     "draw": ("smash.cli.draw", "draw a gadget, an instance, or a plan as moving pebbles"),
