@@ -1,0 +1,356 @@
+"""The layered model: the SMASH gadget with its free chain edges contracted.
+
+It stands for the paper's sections "SMASH gadget" and "Computing a candidate task plan on the gadget".
+
+A layer holds actions that do not touch each other. Gravity fixes the height of every block, so a chain of
+height-indexed nodes shrinks to three nodes a block: its *start* place, *off* the stacks (on a buffer, or in the table
+region after a topple), and its *goal* place. The edges between them are the gadget's: a cross-stack edge from
+start to goal, cross-stack edges to and from a buffer, the topple edges into the table region, a table pick. A
+stack takes part in one action a layer; a chain empties from its top and fills from its bottom. The buffers are one
+node of capacity B, or of unbounded capacity; the latter is a relaxation: in any plan, whatever happens between the
+first removal and the last placement of a block costs at least what the model asks for it.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+
+from smash.planners.milp import Floats, Ints, Milp, MilpBuilder
+from smash.planners.precedence.demands import Demands, demands_of
+from smash.problem.model import Instance, PlanOptions
+
+TRANSFER_COST = 2
+TOPPLE_COST = 1
+KINDS = ("direct", "aside", "fall", "from_aside", "from_table")
+"""The edges of a block: start to goal, start to buffer, start to table (free), buffer to goal, table to goal."""
+
+
+@dataclass(frozen=True, slots=True)
+class LayeredProblem:
+    """The moving blocks and the chains that they leave and fill, by number.
+
+    Attributes:
+        demands: what the goal asks of the start.
+        blocks: moving blocks: the leaving ones, then those that lie on the table and have a place.
+        piles: per location with a leaving block: its name and the numbers of those blocks, bottom first.
+        chains: per goal chain: its location (None: any free one) and the numbers of its blocks, bottom first.
+        lying: numbers of the blocks that lie on the table at the start.
+        placed: numbers of the blocks with a goal place.
+        toppled: locations beside which there is a topple region.
+    """
+
+    demands: Demands
+    blocks: tuple[str, ...]
+    piles: tuple[tuple[str, tuple[int, ...]], ...]
+    chains: tuple[tuple[str | None, tuple[int, ...]], ...]
+    lying: frozenset[int]
+    placed: frozenset[int]
+    toppled: frozenset[str]
+
+    @classmethod
+    def of(cls, instance: Instance, options: PlanOptions) -> LayeredProblem:
+        """Number the moving blocks of an instance."""
+        demands = demands_of(instance)
+        lying = [block for block in instance.table if block in demands.placed]
+        blocks = [block for pile in demands.leaving.values() for block in pile] + lying
+        number = {block: index for index, block in enumerate(blocks)}
+
+        def numbers(pile: tuple[str, ...]) -> tuple[int, ...]:
+            return tuple(number[block] for block in pile)
+
+        chains: list[tuple[str | None, tuple[int, ...]]] = [(at, numbers(pile)) for at, pile in demands.build.items()]
+        chains += [(None, numbers(chain.blocks)) for chain in demands.floating]
+        return cls(
+            demands=demands,
+            blocks=tuple(blocks),
+            piles=tuple((at, numbers(pile)) for at, pile in demands.leaving.items() if pile),
+            chains=tuple(chains),
+            lying=frozenset(number[block] for block in lying),
+            placed=frozenset(number[block] for block in demands.placed),
+            toppled=frozenset(instance.stacks) if options.topple else frozenset(),
+        )
+
+    @property
+    def sound_horizon(self) -> int:
+        """A number of layers that holds every plan of the relaxation: one for each removal and each placement."""
+        return max(1, len(self.blocks) - len(self.lying) + len(self.placed))
+
+    def short_horizon(self) -> int:
+        """A number of layers that all plans of few detours fit: empty the highest pile, then fill the longest chain."""
+        highest = max((len(pile) for _, pile in self.piles), default=0)
+        longest = max((len(chain) for _, chain in self.chains), default=0)
+        return min(self.sound_horizon, highest + longest + 2)
+
+
+@dataclass(frozen=True, slots=True)
+class LayeredModel:
+    """The MILP and the meaning of its columns.
+
+    `edges[kind]`: (moving blocks, layers) column indices, -1 where a block has no such edge in a layer.
+    `topples`: per location the (cuts, layers) columns; cut c takes the leaving blocks from the c-th on.
+    """
+
+    problem: LayeredProblem
+    horizon: int
+    milp: Milp
+    edges: dict[str, Ints]
+    topples: dict[str, Ints]
+
+
+def build_layered(
+    problem: LayeredProblem,
+    options: PlanOptions,
+    horizon: int,
+    *,
+    buffers: int | None = None,
+    occupied: dict[str, int] | None = None,
+) -> LayeredModel:
+    """Build the layered model.
+
+    Args:
+        problem: the moving blocks.
+        options: topple or not, and its cap.
+        horizon: number of layers.
+        buffers: capacity of the one node that stands for the buffers; None: unbounded.
+        occupied: number of blocks on each buffer that is not empty at the start (they use the capacity first).
+    """
+    return _Builder(problem, options, horizon).build(buffers, occupied or {})
+
+
+class _Builder:
+    def __init__(self, problem: LayeredProblem, options: PlanOptions, horizon: int) -> None:
+        self.problem = problem
+        self.options = options
+        self.horizon = horizon
+        self.milp = MilpBuilder()
+        count = len(problem.blocks)
+        self.edges = {kind: np.full((count, horizon), -1, dtype=np.int64) for kind in KINDS}
+        self.topples: dict[str, Ints] = {}
+        self.source = {block: at for at, pile in problem.piles for block in pile}
+        self.target = {block: at for at, chain in problem.chains for block in chain}
+
+    def build(self, buffers: int | None, occupied: dict[str, int]) -> LayeredModel:
+        self._add_edges()
+        self._add_topples()
+        self._leave_and_arrive_once()
+        self._return_after_leaving()
+        for _, pile in self.problem.piles:
+            for lower, upper in itertools.pairwise(pile):
+                self._leave_in_order(lower, upper)
+        for _, chain in self.problem.chains:
+            for under, upper in itertools.pairwise(chain):
+                self._arrive_in_order(under, upper)
+        self._clear_before_filling()
+        self._one_action_a_stack()
+        self._detours()
+        if buffers is not None:
+            self._capacity(buffers, occupied)
+        model = self.milp.build(self._name)
+        return LayeredModel(self.problem, self.horizon, model, self.edges, self.topples)
+
+    def _add_edges(self) -> None:
+        for block in range(len(self.problem.blocks)):
+            leaves = block not in self.problem.lying
+            arrives = block in self.problem.placed
+            at = self.source.get(block)
+            if leaves and arrives and (at != self.target[block] or self.target[block] is None):
+                self._add_edge("direct", block, TRANSFER_COST)
+            if leaves:
+                self._add_edge("aside", block, TRANSFER_COST)
+                if at in self.problem.toppled:
+                    self._add_edge("fall", block, 0)
+                if arrives:
+                    self._add_edge("from_aside", block, TRANSFER_COST)
+            if arrives and (not leaves or at in self.problem.toppled):
+                self._add_edge("from_table", block, TRANSFER_COST)
+
+    def _add_edge(self, kind: str, block: int, cost: float) -> None:
+        self.edges[kind][block] = self.milp.add_columns(self.horizon, cost=cost)
+
+    def _add_topples(self) -> None:
+        """Without a cap the whole leaving part falls: what lies on the table is as near as what lies on a stack."""
+        for location, pile in self.problem.piles:
+            if location not in self.problem.toppled:
+                continue
+            cuts = len(pile) if self.options.max_topple is not None else 1
+            columns = self.milp.add_columns(cuts * self.horizon, cost=TOPPLE_COST).reshape(cuts, self.horizon)
+            self.topples[location] = columns
+            for layer in range(self.horizon):
+                self._topple_rows(pile, columns[:, layer], layer)
+
+    def _topple_rows(self, pile: tuple[int, ...], cuts: Ints, layer: int) -> None:
+        falling = self.edges["fall"][list(pile), layer]
+        for position, block in enumerate(pile):
+            below = cuts[: position + 1]
+            self.milp.add_row([falling[position], *below], [1, *[-1] * len(below)], upper=0)
+            if position < len(cuts):  # what lies from the cut on has left by the end of the layer
+                gone = self._left(block, layer)
+                self.milp.add_row([*gone, cuts[position]], [*[1] * len(gone), -1], lower=0)
+        cap = self.options.max_topple
+        if cap is not None:
+            self.milp.add_row([*falling, *cuts], [*[1] * len(falling), *[-cap] * len(cuts)], upper=0)
+
+    def _columns(self, kinds: tuple[str, ...], block: int, layers: slice) -> list[int]:
+        found = np.concatenate([self.edges[kind][block, layers] for kind in kinds])
+        return [int(column) for column in found if column >= 0]
+
+    def _left(self, block: int, layer: int) -> list[int]:
+        """Columns whose sum is 1 where `block` has left its start place by the end of `layer`."""
+        return self._columns(("direct", "aside", "fall"), block, slice(0, layer + 1))
+
+    def _arrived(self, block: int, layer: int) -> list[int]:
+        """Columns whose sum is 1 where `block` has reached its goal place by the end of `layer`."""
+        return self._columns(("direct", "from_aside", "from_table"), block, slice(0, layer + 1))
+
+    def _leave_and_arrive_once(self) -> None:
+        last = self.horizon - 1
+        for block in range(len(self.problem.blocks)):
+            if block not in self.problem.lying:
+                columns = self._left(block, last)
+                self.milp.add_row(columns, [1] * len(columns), lower=1, upper=1)
+            if block in self.problem.placed:
+                columns = self._arrived(block, last)
+                self.milp.add_row(columns, [1] * len(columns), lower=1, upper=1)
+
+    def _return_after_leaving(self) -> None:
+        for block in sorted(self.problem.placed - self.problem.lying):
+            for away, back in (("aside", "from_aside"), ("fall", "from_table")):
+                for layer in range(self.horizon):
+                    went = self._columns((away,), block, slice(0, layer))
+                    came = self._columns((back,), block, slice(0, layer + 1))
+                    if came:
+                        self.milp.add_row([*came, *went], [*[1] * len(came), *[-1] * len(went)], upper=0)
+
+    def _leave_in_order(self, lower: int, upper: int) -> None:
+        """A pop needs all above gone in an earlier layer; a topple takes what is above with it."""
+        for layer in range(self.horizon):
+            gone = self._left(lower, layer)
+            falling = [int(c) for c in self.edges["fall"][[lower], layer] if c >= 0]
+            before = self._left(upper, layer - 1) if layer else []
+            popped = [column for column in gone if column not in falling]
+            self.milp.add_row([*popped, *before], [*[1] * len(popped), *[-1] * len(before)], upper=0)
+            if falling:
+                above = self._left(upper, layer)
+                self.milp.add_row([*gone, *above], [*[1] * len(gone), *[-1] * len(above)], upper=0)
+
+    def _arrive_in_order(self, under: int, upper: int) -> None:
+        for layer in range(self.horizon):
+            there = self._arrived(upper, layer)
+            before = self._arrived(under, layer - 1) if layer else []
+            self.milp.add_row([*there, *before], [*[1] * len(there), *[-1] * len(before)], upper=0)
+
+    def _clear_before_filling(self) -> None:
+        lowest = {at: pile[0] for at, pile in self.problem.piles}
+        for location, chain in self.problem.chains:
+            if location is None or location not in lowest:
+                continue
+            for layer in range(self.horizon):
+                there = self._arrived(chain[0], layer)
+                gone = self._left(lowest[location], layer - 1) if layer else []
+                self.milp.add_row([*there, *gone], [*[1] * len(there), *[-1] * len(gone)], upper=0)
+
+    def _one_action_a_stack(self) -> None:
+        filled = {at: chain for at, chain in self.problem.chains if at is not None}
+        emptied = dict(self.problem.piles)
+        for location in sorted({*filled, *emptied}):
+            for layer in range(self.horizon):
+                now = slice(layer, layer + 1)
+                columns = [c for b in emptied.get(location, ()) for c in self._columns(("direct", "aside"), b, now)]
+                for block in filled.get(location, ()):
+                    columns += self._columns(("direct", "from_aside", "from_table"), block, now)
+                if location in self.topples:
+                    columns += [int(column) for column in self.topples[location][:, layer]]
+                self.milp.add_row(columns, [1] * len(columns), upper=1)
+
+    def _detours(self) -> None:
+        """Valid inequalities: of blocks that wait for each other in a circle, not all move directly.
+
+        `a` waits for `b` where a direct move of `b` must come before one of `a`.
+        """
+        direct = [b for b in range(len(self.problem.blocks)) if self.edges["direct"][b, 0] >= 0]
+        before = {a: {b for b in direct if b != a and self._comes_before(a, b)} for a in direct}
+        for a in direct:
+            for b in before[a]:
+                if a < b and a in before[b]:
+                    self._not_all_direct((a, b))
+                for c in before[b]:
+                    circle = a in before.get(c, ()) and a < b and a < c
+                    if circle and a not in before[b] and b not in before[c] and c not in before[a]:
+                        self._not_all_direct((a, b, c))
+
+    def _comes_before(self, a: int, b: int) -> bool:
+        """Whether a direct move of `a` must come before a direct move of `b`."""
+        source_a, target_b = self.source[a], self.target[b]
+        if source_a == target_b:
+            return True
+        same_pile = self.source[b] == source_a and a > b
+        same_chain = any(a in chain and b in chain and chain.index(a) < chain.index(b) for _, chain in self._chains)
+        return same_pile or same_chain
+
+    @property
+    def _chains(self) -> tuple[tuple[str | None, tuple[int, ...]], ...]:
+        return self.problem.chains
+
+    def _not_all_direct(self, blocks: tuple[int, ...]) -> None:
+        columns = [c for block in blocks for c in self._columns(("direct",), block, slice(None))]
+        self.milp.add_row(columns, [1] * len(columns), upper=len(blocks) - 1)
+
+    def _capacity(self, buffers: int, occupied: dict[str, int]) -> None:
+        """A buffer holds one block that is put aside; one with start blocks is free once its lowest has left."""
+        standing = dict(self.problem.piles)
+        staying = [at for at, kept in self.problem.demands.keep.items() if at in occupied and kept]
+        lowest = [standing[at][0] for at in occupied if at in standing and at not in staying]
+        for layer in range(self.horizon):
+            columns: list[int] = []
+            values: list[float] = []
+            for block in range(len(self.problem.blocks)):
+                went = self._columns(("aside",), block, slice(0, layer + 1))
+                came = self._columns(("from_aside",), block, slice(0, layer))
+                columns += went + came
+                values += [1.0] * len(went) + [-1.0] * len(came)
+            for block in lowest:
+                gone = self._left(block, layer - 1) if layer else []
+                columns += gone
+                values += [-1.0] * len(gone)
+            self.milp.add_row(columns, values, upper=buffers - len(staying) - len(lowest))
+
+    def _name(self, column: int) -> str:
+        for kind, columns in self.edges.items():
+            found = np.argwhere(columns == column)
+            if len(found):
+                block, layer = found[0]
+                return f"{kind}_block{block}_layer{layer + 1}"
+        for number, columns in enumerate(self.topples.values()):
+            found = np.argwhere(columns == column)
+            if len(found):
+                cut, layer = found[0]
+                return f"topple_stack{number}_cut{cut}_layer{layer + 1}"
+        return f"x{column}"
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """One edge that a solution takes: `layer`, the kind of the edge (or `topple`), its block or its cut."""
+
+    layer: int
+    kind: str
+    subject: int
+    location: str | None = None
+
+
+def read_events(model: LayeredModel, vector: Floats) -> list[Event]:
+    """Return the edges that a solution takes, by layer; within one, what frees room before what takes it."""
+    events = []
+    for kind, columns in model.edges.items():
+        if kind == "fall":
+            continue
+        taken = (columns >= 0) & (vector[columns] > 0.5)
+        events += [Event(int(layer), kind, int(block)) for block, layer in np.argwhere(taken)]
+    for location, cuts in model.topples.items():
+        taken = vector[cuts] > 0.5
+        events += [Event(int(layer), "topple", int(cut), location) for cut, layer in np.argwhere(taken)]
+    order = {"from_aside": 0, "topple": 1, "from_table": 2, "direct": 3, "aside": 4}
+    return sorted(events, key=lambda event: (event.layer, order[event.kind]))

@@ -1,0 +1,118 @@
+"""From the events of a layered solution to actions: where each block that is put aside rests meanwhile.
+
+The model asks only that a block is off its start place between two layers. Here it gets a location: one on
+whose top nothing happens until the block has left again, the one that is needed soonest after that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from smash.planners.layered.events import Event, LayeredProblem
+from smash.problem.model import TABLE, Action, Instance, Pick, Place, State, Topple
+
+NEVER = 1 << 30
+
+
+@dataclass(slots=True)
+class _Chain:
+    """A goal chain while it is built; `location` is None until a free one is taken."""
+
+    location: str | None
+    bottom: bool
+
+
+class Packing:
+    """Turns the events of one solution into actions."""
+
+    def __init__(self, instance: Instance, problem: LayeredProblem, events: Sequence[Event]) -> None:
+        self.instance = instance
+        self.problem = problem
+        self.events = events
+        located = len(problem.demands.build)
+        bottoms = [False] * located + [chain.bottom for chain in problem.demands.floating]
+        self.chains = [_Chain(at, bottom) for (at, _), bottom in zip(problem.chains, bottoms, strict=True)]
+        self.chain_of = {block: number for number, (_, chain) in enumerate(problem.chains) for block in chain}
+        self.pile_of = {block: at for at, pile in problem.piles for block in pile}
+        self.returns = {e.subject: i for i, e in enumerate(events) if e.kind == "from_aside"}
+
+    def actions(self) -> tuple[Action, ...] | None:
+        """Return the plan, or None where some block finds no place to rest."""
+        state = State.start_of(self.instance)
+        where = {block: at for at, pile in state.piles.items() for block in pile}
+        resting: dict[str, list[int]] = {location: [] for location in self.instance.locations}
+        plan: list[Action] = []
+        for index, event in enumerate(self.events):
+            if event.kind == "topple":
+                assert event.location is not None
+                cut = self.problem.demands.keep[event.location] + event.subject
+                if len(state.piles[event.location]) <= cut:
+                    continue  # nothing was left to fall: the plan is cheaper without it
+                plan.append(Topple(event.location, cut + 1))
+                for block in state.piles[event.location][cut:]:
+                    where[block] = TABLE
+                del state.piles[event.location][cut:]
+                continue
+            block = self.problem.blocks[event.subject]
+            source = where.get(block, TABLE)
+            target = self._target(index, event, state, resting, source)
+            if target is None:
+                return None
+            if event.kind == "from_aside":
+                resting[source].remove(event.subject)
+            elif event.kind == "aside":
+                resting[target].append(event.subject)
+            if source != TABLE:
+                state.piles[source].remove(block)
+            state.piles[target].append(block)
+            where[block] = target
+            plan += [Pick(block, source), Place(block, target)]
+        return tuple(plan)
+
+    def _target(self, index: int, event: Event, state: State, resting: dict[str, list[int]], source: str) -> str | None:
+        if event.kind == "aside":
+            until = self.returns.get(event.subject, NEVER)
+            return self._resting_place(index, until, state, resting, source)
+        chain = self.chains[self.chain_of[event.subject]]
+        if chain.location is None:
+            chain.location = self._free_location(index, chain.bottom, state, resting, source)
+        return chain.location
+
+    def _resting_place(
+        self, index: int, until: int, state: State, resting: dict[str, list[int]], source: str
+    ) -> str | None:
+        fits = []
+        for order, location in enumerate(self.instance.locations):
+            free_until = self._next_use(index, location, resting)
+            if location != source and (free_until > until or free_until == until == NEVER):
+                stacked = location in self.instance.stacks or bool(state.piles[location])
+                fits.append((free_until, stacked, order, location))
+        return min(fits)[-1] if fits else None
+
+    def _free_location(
+        self, index: int, bottom: bool, state: State, resting: dict[str, list[int]], source: str
+    ) -> str | None:
+        for location in sorted(self.instance.locations, key=lambda at: bool(state.piles[at])):
+            if bottom and state.piles[location]:
+                return None
+            if location != source and self._next_use(index, location, resting) == NEVER:
+                return location
+        return None
+
+    def _next_use(self, index: int, location: str, resting: dict[str, list[int]]) -> int:
+        """Return the index of the next event that touches what lies on top of `location`, or `NEVER`."""
+        soonest = min((self.returns.get(block, NEVER) for block in resting[location]), default=NEVER)
+        for later in range(index + 1, min(soonest, len(self.events))):
+            if self._touches(self.events[later], location):
+                return later
+        return soonest
+
+    def _touches(self, event: Event, location: str) -> bool:
+        if event.kind == "topple":
+            return event.location == location
+        if event.kind in ("direct", "aside") and self.pile_of.get(event.subject) == location:
+            return True
+        if event.kind == "aside":
+            return False
+        return self.chains[self.chain_of[event.subject]].location == location

@@ -1,0 +1,57 @@
+"""The layered model: its proofs are exhaustive search's, its plans the law's."""
+
+import pytest
+from hypothesis import given, settings
+
+from smash.planners.layered import LayeredPlanner
+from smash.planners.protocol import SolveOptions
+from smash.problem import Law
+from smash.problem.suites import read_suite
+from tests.oracle import optimal_cost
+from tests.strategies import instances, plan_options
+
+
+def solve(instance, options, budget=20.0, **settings):
+    return LayeredPlanner().solve(instance, SolveOptions(options.topple, options.max_topple, **settings), budget)
+
+
+def judge(instance, options, result):
+    """Hold a result to exhaustive search."""
+    optimum = optimal_cost(instance, options)
+    if result.actions is not None:
+        assert Law(instance, options).check(result.actions).accepted
+        assert len(result.actions) >= optimum
+    if result.status == "optimal":
+        assert len(result.actions) == optimum
+    if result.status == "infeasible":
+        assert optimum is None
+    elif optimum is not None and result.lower_bound is not None:
+        assert result.lower_bound <= optimum
+
+
+@settings(max_examples=60, deadline=None)
+@given(instances(max_blocks=4), plan_options())
+def test_what_is_proven_is_true(instance, options):
+    judge(instance, options, solve(instance, options))
+
+
+@pytest.mark.slow
+@settings(max_examples=1500, deadline=None)
+@given(instances(max_blocks=5, max_stacks=3, max_buffers=3), plan_options())
+def test_what_is_proven_is_true_for_many(instance, options):
+    judge(instance, options, solve(instance, options))
+
+
+@pytest.mark.parametrize("horizon", [1, 2])
+def test_a_horizon_that_is_too_short_proves_nothing(horizon):
+    instance = read_suite("multi-6")[0]
+    result = solve(instance, SolveOptions(), horizon=horizon)
+    assert result.status == "unknown"
+    assert result.lower_bound in (None, 0)
+
+
+def test_a_warm_start_is_the_first_incumbent():
+    instance = read_suite("multi-4")[0]
+    result = solve(instance, SolveOptions(), warm_start="greedy")
+    assert result.incumbents[0].origin == "greedy"
+    assert result.status == "optimal"
