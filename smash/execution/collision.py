@@ -7,7 +7,6 @@ the hand reach link 5; neighbours overlap by construction).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
@@ -25,7 +24,10 @@ DEFAULT_MARGIN = 0.010
 CONTACT_MARGIN = -0.002
 """Margin of motions that end in contact (a block set down, a grasp): touching is no collision [m]."""
 SMALLEST_STEP = 0.001
-"""Where the arm is close to something, no point of it moves further than this between two checks [m]."""
+"""Least step between two checks where the arm is close to something, as the way of its fastest point [m].
+
+With a margin the step is as long as the margin: the robot comes no nearer than half of it between two checks.
+"""
 
 BASE_PAIRS = np.array([(far, near) for far in (5, 6, 7) for near in (0, 1, 2)], dtype=np.int64)
 WRIST_PAIRS = np.array([(7, 5)], dtype=np.int64)
@@ -41,23 +43,10 @@ FINGER_CORNERS = np.array([[-0.0106, -0.0002, 0.0584], [0.0106, 0.0265, 0.1123]]
 HAND_TO_TOOL = 0.105
 """From the hand's frame to the tool frame, along z [m]."""
 
-# Bounds on how far any point of arm and hand can be from each joint's axis [m], from the lengths of the links.
-REACH = np.array([1.10, 1.10, 0.80, 0.78, 0.42, 0.36, 0.14])
-
-
-@dataclass(frozen=True, eq=False)
-class SphereModel:
-    """Spheres of links 0 to 7, in the order of the links: see `kernel` for shapes."""
-
-    chain: NDArray[np.float64]
-    spheres: NDArray[np.float64]
-    first: NDArray[np.int64]
-    bounds: NDArray[np.float64]
-
 
 @lru_cache(maxsize=1)
-def sphere_model() -> SphereModel:
-    """Read `panda_spheres.csv`."""
+def arm_model() -> kernel.Arm:
+    """The arm's spheres, from `panda_spheres.csv`."""
     rows = np.loadtxt(Path(__file__).with_name("panda_spheres.csv"), delimiter=",", skiprows=1)
     first = np.searchsorted(rows[:, 0], np.arange(9)).astype(np.int64)
     bounds = np.empty((8, 4))
@@ -66,7 +55,8 @@ def sphere_model() -> SphereModel:
         centre = (own[:, :3].min(axis=0) + own[:, :3].max(axis=0)) / 2
         bounds[link, :3] = centre
         bounds[link, 3] = np.max(np.linalg.norm(own[:, :3] - centre, axis=1) + own[:, 3])
-    return SphereModel(np.ascontiguousarray(panda().chain()), np.ascontiguousarray(rows[:, 1:]), first, bounds)
+    chain, spheres = np.ascontiguousarray(panda().chain()), np.ascontiguousarray(rows[:, 1:])
+    return kernel.Arm(chain, spheres, first, bounds, BASE_PAIRS, WRIST_PAIRS)
 
 
 class CollisionChecker:
@@ -82,25 +72,14 @@ class CollisionChecker:
         self.scene = scene
         self.hand = hand or HandState()
         self.margin = margin
-        centres, half, rotations = _hand_boxes(self.hand)
-        base, wrist = _hand_pairs(len(half))
-        model = sphere_model()
-        self.reach = REACH + (0.0 if self.hand.attached is None else float(np.linalg.norm(half[-1])))
-        self._robot = (model.chain, model.spheres, model.first, model.bounds, BASE_PAIRS, base, WRIST_PAIRS, wrist)
-        self._rest = (
-            centres,
-            half,
-            rotations,
-            scene.centres,
-            scene.half_extents,
-            scene.rotations,
-            margin,
-            WRIST_ALLOWANCE,
-        )
+        boxes = _hand_boxes(self.hand)
+        demands = kernel.Demands(float(margin), WRIST_ALLOWANCE, *_hand_pairs(len(boxes.centres)))
+        around = kernel.Boxes(scene.centres, scene.half_extents, scene.rotations)
+        self._setting = (arm_model(), boxes, around, demands)
 
     def slack(self, joints: Vector) -> float:
         """How much nearer anything may come at `joints` [rad], shape (7,), before it is refused [m]; free above 0."""
-        return float(min(kernel.state_slacks(joints, *self._robot, *self._rest)))
+        return float(kernel.state_slack(joints, *self._setting))
 
     def free(self, joints: Vector) -> bool:
         """Whether the configuration is free."""
@@ -108,11 +87,14 @@ class CollisionChecker:
 
     def segment_free(self, begin: Vector, end: Vector) -> bool:
         """Whether all of the straight joint segment is free."""
+        if kernel.motion_blocked_at_a_glance(begin, end, *self._setting):
+            return False
         return self.segment_reach(begin, end) >= 1.0
 
     def segment_reach(self, begin: Vector, end: Vector) -> float:
         """The part of the segment that is free, from its beginning: 1 is all of it."""
-        return float(kernel.motion_free(begin, end, self.reach, SMALLEST_STEP, *self._robot, *self._rest))
+        smallest = max(SMALLEST_STEP, self.margin)
+        return float(kernel.motion_free(begin, end, smallest, *self._setting))
 
     def path_free(self, waypoints: NDArray[np.float64]) -> bool:
         """Whether all segments between consecutive waypoints [rad], shape (W, 7), are free."""
@@ -129,8 +111,8 @@ class CollisionChecker:
         return tuple(dict.fromkeys(close))
 
 
-def _hand_boxes(hand: HandState) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Hand, left and right finger, and the block if any, as boxes in the tool frame: centres, half extents, axes."""
+def _hand_boxes(hand: HandState) -> kernel.Boxes:
+    """Hand, left and right finger, and the block if any, as boxes in the tool frame."""
     left = FINGER_CORNERS + np.array([0.0, hand.opening, 0.0])
     right = left * np.array([1.0, -1.0, 1.0])
     corners = np.stack([HAND_CORNERS, left, right])
@@ -141,7 +123,7 @@ def _hand_boxes(hand: HandState) -> tuple[NDArray[np.float64], NDArray[np.float6
         centres = np.vstack([centres, hand.attached.translation])
         half = np.vstack([half, hand.attached.half_extents])
         rotations = np.concatenate([rotations, hand.attached.rotation[None]])
-    return np.ascontiguousarray(centres), np.ascontiguousarray(half), np.ascontiguousarray(rotations)
+    return kernel.Boxes(*(np.ascontiguousarray(array) for array in (centres, half, rotations)))
 
 
 def _hand_pairs(boxes: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

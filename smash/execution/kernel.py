@@ -2,21 +2,13 @@
 
 The robot is spheres on its links and boxes on its hand (hand, fingers, carried block), the scene is boxes. Distances
 are lower bounds: exact from sphere to box, the widest separating axis between two boxes (negative: penetration).
-
-Shapes used throughout:
-    chain: fixed transforms of the arm, (8, 3, 4), as of `Panda.chain`.
-    spheres: centre and radius in the link's frame [m], (S, 4); link `i` owns rows `first[i]` to `first[i + 1]`.
-    bounds: one sphere around everything of a link, (8, 4).
-    hand_*: boxes in the tool frame: centres (B, 3), half extents (B, 3), rotations (B, 3, 3).
-    link_pairs, hand_pairs: links, or hand box and link, that can meet each other, (P, 2).
-    box_*: boxes of the scene in the world: centres (N, 3), half extents (N, 3), rotations (N, 3, 3).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import ParamSpec, TypeVar, cast
+from typing import NamedTuple, ParamSpec, TypeVar, cast
 
 import numpy as np
 from numba import njit
@@ -31,11 +23,83 @@ _Result = TypeVar("_Result")
 
 def compiled(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _Result]:
     """Numba's `njit` with its file cache, with the function's own type."""
-    return cast("Callable[_Parameters, _Result]", njit(cache=True)(function))
+    return cast("Callable[_Parameters, _Result]", njit(cache=True, error_model="numpy")(function))
 
 
 FAR = 0.1
-"""Distances above this are all reported as this [m]: far enough for any step."""
+"""Distances to the scene and the base above this are all reported as this [m]: far enough for any step."""
+WRIST_FAR = 0.03
+"""The same for the distance of hand and forearm, which two joints change alone [m]."""
+LINKS = 8
+LINK_ROWS = np.arange(LINKS + 1)
+FIRST_MOVING_LINK = 2
+"""Links 0 and 1 stand over their place on the table: they are not checked against the scene."""
+
+
+class Arm(NamedTuple):
+    """The seven links and the base.
+
+    Attributes:
+        chain: Fixed transforms, (8, 3, 4), as of `Panda.chain`.
+        spheres: Centre and radius in the link's frame [m], (S, 4).
+        first: Link i owns the spheres first[i] to first[i + 1], (9,).
+        bounds: One sphere around everything of a link [m], (8, 4).
+        base_pairs: Links of the wrist and of the base that can meet, (P, 2).
+        wrist_pairs: Links of the wrist that can meet, (P, 2).
+    """
+
+    chain: Array
+    spheres: Array
+    first: IntArray
+    bounds: Array
+    base_pairs: IntArray
+    wrist_pairs: IntArray
+
+
+class Boxes(NamedTuple):
+    """Oriented boxes: of the scene in the world, or of the hand in the tool frame.
+
+    Attributes:
+        centres: [m], (N, 3).
+        half: Half extents [m], (N, 3).
+        axes: Box axes as columns, (N, 3, 3).
+    """
+
+    centres: Array
+    half: Array
+    axes: Array
+
+
+class Body(NamedTuple):
+    """The robot at one configuration, in the world.
+
+    Attributes:
+        frames: Of links 0 to 7 and of the tool, (9, 3, 4).
+        spheres: Centre and radius [m], (S, 4).
+        bounds: One sphere around each link [m], (8, 4).
+        hand: Boxes of hand, fingers and carried block.
+    """
+
+    frames: Array
+    spheres: Array
+    bounds: Array
+    hand: Boxes
+
+
+class Demands(NamedTuple):
+    """What a free state keeps.
+
+    Attributes:
+        margin: Distance from the scene [m].
+        allowance: Overlap that is allowed to the covers of forearm and wrist, which are too thick [m].
+        hand_base_pairs: Hand box and link of the base that can meet, (P, 2).
+        hand_wrist_pairs: Hand box and link of the wrist that can meet, (P, 2).
+    """
+
+    margin: float
+    allowance: float
+    hand_base_pairs: IntArray
+    hand_wrist_pairs: IntArray
 
 
 @compiled
@@ -61,47 +125,83 @@ def link_frames(chain: Array, joints: Array) -> Array:
 
 
 @compiled
-def moved_point(frame: Array, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """A point of a frame in the world."""
-    return (
-        frame[0, 0] * x + frame[0, 1] * y + frame[0, 2] * z + frame[0, 3],
-        frame[1, 0] * x + frame[1, 1] * y + frame[1, 2] * z + frame[1, 3],
-        frame[2, 0] * x + frame[2, 1] * y + frame[2, 2] * z + frame[2, 3],
-    )
+def moved_spheres(frames: Array, spheres: Array, first: IntArray) -> Array:
+    """Spheres in the world, (S, 4), from the frames of links 0 to 7; link i owns first[i] to first[i + 1]."""
+    world = np.empty((spheres.shape[0], 4))
+    for link in range(LINKS):
+        a, b, c, d = frames[link, 0, 0], frames[link, 0, 1], frames[link, 0, 2], frames[link, 0, 3]
+        e, f, g, h = frames[link, 1, 0], frames[link, 1, 1], frames[link, 1, 2], frames[link, 1, 3]
+        i, j, k, m = frames[link, 2, 0], frames[link, 2, 1], frames[link, 2, 2], frames[link, 2, 3]
+        for index in range(first[link], first[link + 1]):
+            x, y, z = spheres[index, 0], spheres[index, 1], spheres[index, 2]
+            world[index, 0] = a * x + b * y + c * z + d
+            world[index, 1] = e * x + f * y + g * z + h
+            world[index, 2] = i * x + j * y + k * z + m
+            world[index, 3] = spheres[index, 3]
+    return world
+
+
+# The inner functions take bare arrays: passing a tuple of arrays costs more than their whole work.
 
 
 @compiled
-def point_to_box(x: float, y: float, z: float, centre: Array, half: Array, axes: Array) -> float:
-    """Distance from a point to a box, 0 inside [m]."""
-    dx, dy, dz = x - centre[0], y - centre[1], z - centre[2]
+def sphere_to_box(world: Array, index: int, centres: Array, half: Array, axes: Array, box: int) -> float:
+    """Distance from a sphere to a box [m]; minus the radius where the sphere's centre is inside."""
+    dx = world[index, 0] - centres[box, 0]
+    dy = world[index, 1] - centres[box, 1]
+    dz = world[index, 2] - centres[box, 2]
     total = 0.0
     for axis in range(3):
-        beyond = abs(dx * axes[0, axis] + dy * axes[1, axis] + dz * axes[2, axis]) - half[axis]
+        beyond = abs(dx * axes[box, 0, axis] + dy * axes[box, 1, axis] + dz * axes[box, 2, axis]) - half[box, axis]
         if beyond > 0.0:
             total += beyond * beyond
-    return math.sqrt(total)
+    distance: float = math.sqrt(total) - world[index, 3]
+    return distance
 
 
 @compiled
-def box_to_box(centre_a: Array, half_a: Array, axes_a: Array, centre_b: Array, half_b: Array, axes_b: Array) -> float:
-    """Widest separation of two boxes over the 15 axes that decide (faces, edge pairs) [m]; negative: they overlap."""
-    offset = np.empty(3)
-    turn = np.empty((3, 3))
-    spread = np.empty((3, 3))
-    dx, dy, dz = centre_b[0] - centre_a[0], centre_b[1] - centre_a[1], centre_b[2] - centre_a[2]
-    for i in range(3):
-        offset[i] = dx * axes_a[0, i] + dy * axes_a[1, i] + dz * axes_a[2, i]
-        for j in range(3):
-            turn[i, j] = axes_a[0, i] * axes_b[0, j] + axes_a[1, i] * axes_b[1, j] + axes_a[2, i] * axes_b[2, j]
-            spread[i, j] = abs(turn[i, j])
+def box_to_box(
+    centres_a: Array,
+    half_a: Array,
+    axes_a: Array,
+    a: int,
+    centres_b: Array,
+    half_b: Array,
+    axes_b: Array,
+    b: int,
+    known: float,
+    turn: Array,
+) -> float:
+    """Widest separation of two boxes [m], negative where they overlap; or any value not below `known`.
+
+    Looks along the 15 axes that decide: the face normals of both and the products of their edges. `turn` is room to
+    work in, (3, 3).
+    """
+    dx = centres_b[b, 0] - centres_a[a, 0]
+    dy = centres_b[b, 1] - centres_a[a, 1]
+    dz = centres_b[b, 2] - centres_a[a, 2]
     widest = -1e9
     for i in range(3):
-        reach = half_a[i] + half_b[0] * spread[i, 0] + half_b[1] * spread[i, 1] + half_b[2] * spread[i, 2]
-        widest = max(widest, abs(offset[i]) - reach)
-    for j in range(3):
-        along = offset[0] * turn[0, j] + offset[1] * turn[1, j] + offset[2] * turn[2, j]
-        reach = half_b[j] + half_a[0] * spread[0, j] + half_a[1] * spread[1, j] + half_a[2] * spread[2, j]
+        along = dx * axes_a[a, 0, i] + dy * axes_a[a, 1, i] + dz * axes_a[a, 2, i]
+        reach = half_a[a, i]
+        for j in range(3):
+            turn[i, j] = (
+                axes_a[a, 0, i] * axes_b[b, 0, j]
+                + axes_a[a, 1, i] * axes_b[b, 1, j]
+                + axes_a[a, 2, i] * axes_b[b, 2, j]
+            )
+            reach += half_b[b, j] * abs(turn[i, j])
         widest = max(widest, abs(along) - reach)
+    for j in range(3):
+        along = dx * axes_b[b, 0, j] + dy * axes_b[b, 1, j] + dz * axes_b[b, 2, j]
+        reach = half_a[a, 0] * abs(turn[0, j]) + half_a[a, 1] * abs(turn[1, j]) + half_a[a, 2] * abs(turn[2, j])
+        widest = max(widest, abs(along) - reach - half_b[b, j])
+    if widest >= known:
+        return widest
+    offset_0 = dx * axes_a[a, 0, 0] + dy * axes_a[a, 1, 0] + dz * axes_a[a, 2, 0]
+    offset_1 = dx * axes_a[a, 0, 1] + dy * axes_a[a, 1, 1] + dz * axes_a[a, 2, 1]
+    offset_2 = dx * axes_a[a, 0, 2] + dy * axes_a[a, 1, 2] + dz * axes_a[a, 2, 2]
+    offset = (offset_0, offset_1, offset_2)
     for i in range(3):
         i1, i2 = (i + 1) % 3, (i + 2) % 3
         for j in range(3):
@@ -109,261 +209,213 @@ def box_to_box(centre_a: Array, half_a: Array, axes_a: Array, centre_b: Array, h
             if length < 1e-4:
                 continue
             j1, j2 = (j + 1) % 3, (j + 2) % 3
-            reach = half_a[i1] * spread[i2, j] + half_a[i2] * spread[i1, j]
-            reach += half_b[j1] * spread[i, j2] + half_b[j2] * spread[i, j1]
+            reach = half_a[a, i1] * abs(turn[i2, j]) + half_a[a, i2] * abs(turn[i1, j])
+            reach += half_b[b, j1] * abs(turn[i, j2]) + half_b[b, j2] * abs(turn[i, j1])
             along = offset[i2] * turn[i1, j] - offset[i1] * turn[i2, j]
             widest = max(widest, (abs(along) - reach) / length)
     return widest
 
 
 @compiled
-def place_boxes(frame: Array, centres: Array, rotations: Array) -> tuple[Array, Array]:
-    """Boxes of a frame in the world: centres (B, 3) and rotations (B, 3, 3)."""
-    count = centres.shape[0]
+def place_boxes(frame: Array, boxes: Boxes) -> Boxes:
+    """Boxes of a frame, in the world."""
+    count = boxes.centres.shape[0]
     placed, turned = np.empty((count, 3)), np.empty((count, 3, 3))
     for box in range(count):
         for row in range(3):
             placed[box, row] = frame[row, 3]
             for inner in range(3):
-                placed[box, row] += frame[row, inner] * centres[box, inner]
+                placed[box, row] += frame[row, inner] * boxes.centres[box, inner]
             for column in range(3):
                 value = 0.0
                 for inner in range(3):
-                    value += frame[row, inner] * rotations[box, inner, column]
+                    value += frame[row, inner] * boxes.axes[box, inner, column]
                 turned[box, row, column] = value
-    return placed, turned
+    return Boxes(placed, boxes.half, turned)
 
 
 @compiled
-def radius_of(half: Array) -> float:
+def radius_of(half: Array, box: int) -> float:
     """Half diagonal of a box [m]."""
-    return math.sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2])
+    return math.sqrt(half[box, 0] ** 2 + half[box, 1] ** 2 + half[box, 2] ** 2)
+
+
+@compiled
+def posture(arm: Arm, hand: Boxes, joints: Array) -> Body:
+    """The robot at a configuration [rad], (7,), with the hand's boxes given in the tool frame."""
+    frames = link_frames(arm.chain, joints)
+    spheres = moved_spheres(frames, arm.spheres, arm.first)
+    return Body(frames, spheres, moved_spheres(frames, arm.bounds, LINK_ROWS), place_boxes(frames[8], hand))
 
 
 @compiled
 def link_to_box(
-    frame: Array, spheres: Array, start: int, stop: int, centre: Array, half: Array, axes: Array, known: float
-) -> float:
-    """Least distance of a link's spheres to a box, or `known` where that is less [m]."""
-    least = known
-    for index in range(start, stop):
-        x, y, z = moved_point(frame, spheres[index, 0], spheres[index, 1], spheres[index, 2])
-        least = min(least, point_to_box(x, y, z, centre, half, axes) - spheres[index, 3])
-    return least
-
-
-@compiled
-def scene_distance(
-    frames: Array,
     spheres: Array,
-    first: IntArray,
     bounds: Array,
-    placed: Array,
-    hand_half: Array,
-    turned: Array,
-    box_centre: Array,
-    box_half: Array,
-    box_axes: Array,
-    from_link: int,
+    first: IntArray,
+    link: int,
+    centres: Array,
+    half: Array,
+    axes: Array,
+    box: int,
     known: float,
 ) -> float:
-    """Least distance of the robot to the scene's boxes, or `known` where that is less [m].
-
-    Links before `from_link` (bolted or hardly moving) are left out.
-    """
+    """Least distance of a link's spheres to a box, or `known` where that is less [m]."""
+    if sphere_to_box(bounds, link, centres, half, axes, box) >= known:
+        return known
     least = known
-    for box in range(box_centre.shape[0]):
-        centre, half, axes = box_centre[box], box_half[box], box_axes[box]
-        around = radius_of(half)
-        for held in range(placed.shape[0]):
-            dx = placed[held, 0] - centre[0]
-            dy = placed[held, 1] - centre[1]
-            dz = placed[held, 2] - centre[2]
-            limit = least + around + radius_of(hand_half[held])
-            if limit <= 0.0 or dx * dx + dy * dy + dz * dz >= limit * limit:
-                continue
-            least = min(least, box_to_box(placed[held], hand_half[held], turned[held], centre, half, axes))
-        for link in range(from_link, 8):
-            x, y, z = moved_point(frames[link], bounds[link, 0], bounds[link, 1], bounds[link, 2])
-            if point_to_box(x, y, z, centre, half, axes) - bounds[link, 3] < least:
-                least = link_to_box(frames[link], spheres, first[link], first[link + 1], centre, half, axes, least)
+    for index in range(first[link], first[link + 1]):
+        least = min(least, sphere_to_box(spheres, index, centres, half, axes, box))
     return least
 
 
 @compiled
-def links_distance(
-    frames: Array, spheres: Array, first: IntArray, bounds: Array, link_a: int, link_b: int, known: float
-) -> float:
+def scene_distance(arm: Arm, body: Body, scene: Boxes, known: float) -> float:
+    """Least distance of the robot to the scene's boxes, or `known` where that is less [m]."""
+    least = known
+    held_centres, held_half, held_axes = body.hand.centres, body.hand.half, body.hand.axes
+    centres, half, axes = scene.centres, scene.half, scene.axes
+    spheres, bounds, first = body.spheres, body.bounds, arm.first
+    turn = np.empty((3, 3))
+    for box in range(centres.shape[0]):
+        around = radius_of(half, box)
+        for held in range(held_centres.shape[0]):
+            dx = held_centres[held, 0] - centres[box, 0]
+            dy = held_centres[held, 1] - centres[box, 1]
+            dz = held_centres[held, 2] - centres[box, 2]
+            limit = least + around + radius_of(held_half, held)
+            if limit > 0.0 and dx * dx + dy * dy + dz * dz < limit * limit:
+                apart = box_to_box(held_centres, held_half, held_axes, held, centres, half, axes, box, least, turn)
+                least = min(least, apart)
+    # The hand first: it is mostly the nearest, and a small distance known early spares the links' spheres.
+    for box in range(centres.shape[0]):
+        for link in range(FIRST_MOVING_LINK, LINKS):
+            least = link_to_box(spheres, bounds, first, link, centres, half, axes, box, least)
+    return least
+
+
+@compiled
+def spheres_apart(one: Array, i: int, other: Array, j: int) -> float:
+    """Distance between two spheres [m]."""
+    dx, dy, dz = one[i, 0] - other[j, 0], one[i, 1] - other[j, 1], one[i, 2] - other[j, 2]
+    distance: float = math.sqrt(dx * dx + dy * dy + dz * dz) - one[i, 3] - other[j, 3]
+    return distance
+
+
+@compiled
+def links_distance(spheres: Array, bounds: Array, first: IntArray, link_a: int, link_b: int, known: float) -> float:
     """Least distance between the spheres of two links, or `known` where that is less [m]."""
-    ax, ay, az = moved_point(frames[link_a], bounds[link_a, 0], bounds[link_a, 1], bounds[link_a, 2])
-    bx, by, bz = moved_point(frames[link_b], bounds[link_b, 0], bounds[link_b, 1], bounds[link_b, 2])
-    apart = math.sqrt((ax - bx) ** 2 + (ay - by) ** 2 + (az - bz) ** 2)
-    if apart - bounds[link_a, 3] - bounds[link_b, 3] >= known:
+    if spheres_apart(bounds, link_a, bounds, link_b) >= known:
         return known
     least = known
     for i in range(first[link_a], first[link_a + 1]):
-        px, py, pz = moved_point(frames[link_a], spheres[i, 0], spheres[i, 1], spheres[i, 2])
-        near = math.sqrt((px - bx) ** 2 + (py - by) ** 2 + (pz - bz) ** 2) - spheres[i, 3] - bounds[link_b, 3]
-        if near >= least:
+        if spheres_apart(spheres, i, bounds, link_b) >= least:
             continue
         for j in range(first[link_b], first[link_b + 1]):
-            x, y, z = moved_point(frames[link_b], spheres[j, 0], spheres[j, 1], spheres[j, 2])
-            gap = math.sqrt((px - x) ** 2 + (py - y) ** 2 + (pz - z) ** 2)
-            least = min(least, gap - spheres[i, 3] - spheres[j, 3])
+            least = min(least, spheres_apart(spheres, i, spheres, j))
     return least
 
 
 @compiled
-def self_distance(
-    frames: Array,
-    spheres: Array,
-    first: IntArray,
-    bounds: Array,
-    placed: Array,
-    hand_half: Array,
-    turned: Array,
-    link_pairs: IntArray,
-    hand_pairs: IntArray,
-    known: float,
-) -> float:
-    """Least distance between parts of the robot that can meet, or `known` where that is less [m]."""
+def self_distance(arm: Arm, body: Body, link_pairs: IntArray, hand_pairs: IntArray, known: float) -> float:
+    """Least distance between those pairs of the robot's parts, or `known` where that is less [m]."""
     least = known
+    spheres, bounds, first = body.spheres, body.bounds, arm.first
+    centres, half, axes = body.hand.centres, body.hand.half, body.hand.axes
     for pair in range(link_pairs.shape[0]):
-        least = links_distance(frames, spheres, first, bounds, link_pairs[pair, 0], link_pairs[pair, 1], least)
+        least = links_distance(spheres, bounds, first, link_pairs[pair, 0], link_pairs[pair, 1], least)
     for pair in range(hand_pairs.shape[0]):
         box, link = hand_pairs[pair, 0], hand_pairs[pair, 1]
-        x, y, z = moved_point(frames[link], bounds[link, 0], bounds[link, 1], bounds[link, 2])
-        if point_to_box(x, y, z, placed[box], hand_half[box], turned[box]) - bounds[link, 3] < least:
-            least = link_to_box(
-                frames[link],
-                spheres,
-                first[link],
-                first[link + 1],
-                placed[box],
-                hand_half[box],
-                turned[box],
-                least,
-            )
+        least = link_to_box(spheres, bounds, first, link, centres, half, axes, box, least)
     return least
 
 
 @compiled
-def state_slacks(
-    joints: Array,
-    chain: Array,
-    spheres: Array,
-    first: IntArray,
-    bounds: Array,
-    link_pairs: IntArray,
-    hand_pairs: IntArray,
-    wrist_links: IntArray,
-    wrist_hand: IntArray,
-    hand_centre: Array,
-    hand_half: Array,
-    hand_axes: Array,
-    box_centre: Array,
-    box_half: Array,
-    box_axes: Array,
-    margin: float,
-    allowance: float,
-) -> tuple[float, float]:
+def slacks(arm: Arm, body: Body, scene: Boxes, demands: Demands) -> tuple[float, float]:
     """How much nearer anything may come before the state is refused [m]: free where both are above 0.
 
-    The scene must stay `margin` away; parts of the robot must not touch each other. The wrist's parts, which the
-    spheres make too thick, may overlap by `allowance`.
+    Args:
+        arm: The arm.
+        body: Of `posture`.
+        scene: What to keep away from.
+        demands: How far.
 
     Returns:
         The slack to the scene and to the arm's base, which all joints change, and that between the forearm and the
-        hand, which joints 6 and 7 change alone.
+        hand, which joints 6 and 7 change alone. Once one is 0 or less the other may be left unknown.
     """
-    frames = link_frames(chain, joints)
-    placed, turned = place_boxes(frames[8], hand_centre, hand_axes)
-    wrist = allowance + self_distance(
-        frames, spheres, first, bounds, placed, hand_half, turned, wrist_links, wrist_hand, FAR
-    )
+    wrist = demands.allowance + self_distance(arm, body, arm.wrist_pairs, demands.hand_wrist_pairs, WRIST_FAR)
     if wrist <= 0.0:
         return wrist, wrist
-    base = self_distance(frames, spheres, first, bounds, placed, hand_half, turned, link_pairs, hand_pairs, FAR)
+    base = self_distance(arm, body, arm.base_pairs, demands.hand_base_pairs, FAR)
     if base <= 0.0:
         return base, wrist
-    outside = scene_distance(
-        frames,
-        spheres,
-        first,
-        bounds,
-        placed,
-        hand_half,
-        turned,
-        box_centre,
-        box_half,
-        box_axes,
-        2,
-        base + margin,
-    )
-    return outside - margin, wrist
+    margin = demands.margin
+    return scene_distance(arm, body, scene, base + margin) - margin, wrist
+
+
+@compiled
+def state_slack(joints: Array, arm: Arm, hand: Boxes, scene: Boxes, demands: Demands) -> float:
+    """The lesser of the `slacks` of a configuration [rad], (7,): free above 0 [m]."""
+    outside, wrist = slacks(arm, posture(arm, hand, joints), scene, demands)
+    return min(outside, wrist)
+
+
+@compiled
+def radii(body: Body) -> Array:
+    """How far the outermost point that a joint moves is from the joint's axis now, at most [m], shape (7,)."""
+    reach = np.zeros(7)
+    hand = body.hand
+    for joint in range(7):
+        axis = body.frames[joint + 1]
+        for index in range(joint + 1, LINKS + hand.centres.shape[0]):
+            if index < LINKS:
+                x, y, z, size = body.bounds[index]
+            else:
+                x, y, z = hand.centres[index - LINKS]
+                size = radius_of(hand.half, index - LINKS)
+            dx, dy, dz = x - axis[0, 3], y - axis[1, 3], z - axis[2, 3]
+            along = dx * axis[0, 2] + dy * axis[1, 2] + dz * axis[2, 2]
+            across = math.sqrt(max(0.0, dx * dx + dy * dy + dz * dz - along * along))
+            reach[joint] = max(reach[joint], across + size)
+    return reach
 
 
 @compiled
 def motion_free(
-    begin: Array,
-    end: Array,
-    reach: Array,
-    smallest: float,
-    chain: Array,
-    spheres: Array,
-    first: IntArray,
-    bounds: Array,
-    link_pairs: IntArray,
-    hand_pairs: IntArray,
-    wrist_links: IntArray,
-    wrist_hand: IntArray,
-    hand_centre: Array,
-    hand_half: Array,
-    hand_axes: Array,
-    box_centre: Array,
-    box_half: Array,
-    box_axes: Array,
-    margin: float,
-    allowance: float,
+    begin: Array, end: Array, smallest: float, arm: Arm, hand: Boxes, scene: Boxes, demands: Demands
 ) -> float:
     """How far along the straight joint segment the robot gets before something is in the way: 1 is all of it.
 
-    Steps are as long as the slack allows: no point of the robot moves further than sum |dq_j| reach_j [m] in a step, so
-    a step of that size within the slack cannot reach an obstacle. Where the slack is less, steps of `smallest` [m].
+    Steps are as long as the slack allows: while the robot moves by sum |dq_j| (r_j + d), no point of it moves further,
+    where r_j are the `radii` at the step's beginning and d is the step itself, so a step within the slack cannot reach
+    an obstacle. Where the slack is less, steps of `smallest` [m] are taken.
     """
-    travel = 1e-12
-    for joint in range(7):
-        travel += abs(end[joint] - begin[joint]) * reach[joint]
-    wrist_travel = 1e-12
-    for joint in range(5, 7):
-        wrist_travel += abs(end[joint] - begin[joint]) * reach[joint]
-    here = np.empty(7)
+    change = np.abs(end - begin)
+    total = max(np.sum(change), 1e-9)
     done = 0.0
     while True:
-        for joint in range(7):
-            here[joint] = begin[joint] + done * (end[joint] - begin[joint])
-        slack, wrist = state_slacks(
-            here,
-            chain,
-            spheres,
-            first,
-            bounds,
-            link_pairs,
-            hand_pairs,
-            wrist_links,
-            wrist_hand,
-            hand_centre,
-            hand_half,
-            hand_axes,
-            box_centre,
-            box_half,
-            box_axes,
-            margin,
-            allowance,
-        )
-        if slack <= 0.0 or wrist <= 0.0:
+        body = posture(arm, hand, begin + done * (end - begin))
+        outside, wrist = slacks(arm, body, scene, demands)
+        if outside <= 0.0 or wrist <= 0.0:
             return done
         if done >= 1.0:
             return 1.0
-        step = min(max(slack, smallest) / travel, max(wrist, smallest) / wrist_travel)
+        reach = radii(body)
+        travel = np.sum(change * reach)
+        wrist_travel = change[5] * reach[5] + change[6] * reach[6]
+        outside, wrist = max(outside, smallest), max(wrist, smallest)
+        step = min(outside / (travel + outside * total), wrist / (wrist_travel + wrist * total))
         done = min(1.0, done + step)
+
+
+@compiled
+def motion_blocked_at_a_glance(begin: Array, end: Array, arm: Arm, hand: Boxes, scene: Boxes, demands: Demands) -> bool:
+    """Whether a few states of the segment, its end first, show that it is blocked: most blocked edges end here."""
+    if state_slack(end, arm, hand, scene, demands) <= 0.0:
+        return True
+    parts = 4 if np.sum(np.abs(end - begin)) > 0.4 else 1
+    for part in range(1, parts):
+        if state_slack(begin + part / parts * (end - begin), arm, hand, scene, demands) <= 0.0:
+            return True
+    return False

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
 from smash.execution import kernel
-from smash.execution.collision import CollisionChecker, sphere_model
+from smash.execution.collision import CollisionChecker, arm_model
 from smash.execution.fit_spheres import surface_samples
 from smash.execution.hulls import HullChecker, link_vertices
 from smash.execution.robot import LOWER, READY, UPPER, panda
@@ -24,7 +24,7 @@ def configurations(count, seed):
 
 def test_both_kinematics_agree():
     for joints in configurations(20, 0):
-        frames = kernel.link_frames(sphere_model().chain, joints)
+        frames = kernel.link_frames(arm_model().chain, joints)
         pose = panda().forward(joints)
         assert np.allclose(frames[8, :, 3], pose.position)
         assert np.allclose(frames[8, :, :3], pose.rotation)
@@ -32,7 +32,7 @@ def test_both_kinematics_agree():
 
 @pytest.mark.parametrize("link", range(8))
 def test_the_spheres_cover_the_hull_of_their_link(link):
-    model = sphere_model()
+    model = arm_model()
     own = model.spheres[model.first[link] : model.first[link + 1]]
     points = surface_samples(link_vertices(link), 2000, np.random.default_rng(7))
     outside = np.linalg.norm(points[:, None] - own[None, :, :3], axis=2) - own[None, :, 3]
@@ -77,7 +77,8 @@ def test_the_distance_of_boxes_is_a_lower_bound_that_sees_every_overlap(seed):
     half = generator.uniform(0.02, 0.2, (2, 3))
     centres = generator.uniform(-0.25, 0.25, (2, 3))
     axes = [np.linalg.qr(generator.normal(size=(3, 3)))[0] for _ in range(2)]
-    bound = kernel.box_to_box(centres[0], half[0], axes[0], centres[1], half[1], axes[1])
+    boxes = (centres, half, np.stack(axes))
+    bound = kernel.box_to_box(*boxes, 0, *boxes, 1, np.inf, np.empty((3, 3)))
     points = [centres[box] + (generator.uniform(-1, 1, (300, 3)) * half[box]) @ axes[box].T for box in range(2)]
     nearest = np.linalg.norm(points[0][:, None] - points[1][None], axis=2).min()
     assert bound <= nearest
