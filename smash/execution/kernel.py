@@ -264,8 +264,14 @@ def link_to_box(
     if sphere_to_box(bounds, link, centres, half, axes, box) >= known:
         return known
     least = known
+    around = radius_of(half, box)
     for index in range(first[link], first[link + 1]):
-        least = min(least, sphere_to_box(spheres, index, centres, half, axes, box))
+        dx = spheres[index, 0] - centres[box, 0]
+        dy = spheres[index, 1] - centres[box, 1]
+        dz = spheres[index, 2] - centres[box, 2]
+        limit = least + around + spheres[index, 3]
+        if dx * dx + dy * dy + dz * dz < limit * limit or limit < 0.0:
+            least = min(least, sphere_to_box(spheres, index, centres, half, axes, box))
     return least
 
 

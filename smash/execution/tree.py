@@ -20,9 +20,9 @@ from smash.execution.robot import JOINTS, LOWER, UPPER
 
 ITERATIONS = 6000
 """Samples after which a search gives up."""
-RANGE = 1.5
+RANGE = 1.0
 """Longest new edge of a tree [rad]."""
-SHORTCUT_TRIES = 40
+SHORTCUT_TRIES = 20
 
 util.setLogLevel(util.LogLevel.LOG_NONE)
 
