@@ -24,6 +24,8 @@ _BOUND = re.compile(r"\] (?:f = (\d+)|BOUND: (\d+) <)")
 _SIZES = re.compile(r"^Translator (variables|facts|operators|task size): (\d+)")
 _SEARCH_CLOCK = re.compile(r"^\[t=([\d.]+)s")
 _EXHAUSTED = "Completely explored state space"
+_INFINITE = 2**31 - 1
+"""SymK's lower bound when a frontier is empty: nothing is left to expand."""
 
 
 class DownwardPlanner(EnginePlanner):
@@ -81,10 +83,10 @@ class DownwardPlanner(EnginePlanner):
             for line in search.lines():
                 if _PLAN_WRITTEN in line:
                     plans.read_new(line)
-                exhausted = exhausted or _EXHAUSTED in line
-                bound = _BOUND.search(line) if self.configuration.admissible else None
-                if bound:
-                    run.raise_bound(int(bound[1] or bound[2]))
+                bound = _bound_in(line) if self.configuration.admissible else None
+                exhausted = exhausted or _EXHAUSTED in line or bound == _INFINITE
+                if bound is not None and bound != _INFINITE:
+                    run.raise_bound(bound)
             outcome = _ended(run, search)
         plans.read_new("")
         return self._judge(run, outcome, exhausted)
@@ -120,6 +122,11 @@ class _PlanFiles:
             clock = _SEARCH_CLOCK.match(line)
             if clock:
                 self._times.append(float(clock[1]))
+
+
+def _bound_in(line: str) -> int | None:
+    bound = _BOUND.search(line)
+    return int(bound[1] or bound[2]) if bound else None
 
 
 def _plan_number(file: Path) -> int:

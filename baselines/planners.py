@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from baselines.aries import AriesPlanner
 from baselines.configurations import IPDB, LAMA, LAMA_FIRST, LMCUT, SYMBOLIC
 from baselines.downward import DownwardPlanner
+from baselines.enhsp import EnhspPlanner
 
 __all__ = [
+    "Aries",
+    "Enhsp",
     "FdLama",
     "FdLamaChain",
     "FdLamaConditional",
@@ -80,3 +84,19 @@ class SymkOpt(DownwardPlanner):
     configuration = SYMBOLIC
     anytime = False
     proves = True
+
+
+class Enhsp(EnhspPlanner):
+    """ENHSP on the STRIPS chain encoding."""
+
+    summary = "ENHSP, greedy, anytime (needs Java); topple as a chain of STRIPS actions"
+    name = "enhsp"
+    encoding = "chain"
+
+
+class Aries(AriesPlanner):
+    """Aries on the STRIPS chain encoding."""
+
+    summary = "Aries through unified-planning, anytime; topple as a chain of STRIPS actions"
+    name = "aries"
+    encoding = "chain"

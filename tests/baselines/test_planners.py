@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from baselines import planners
-from baselines.planners import FdLama, FdLamaChain, FdLamaFirst, FdOpt, FdOptIpdb, SymkOpt
+from baselines.planners import Aries, Enhsp, FdLama, FdLamaChain, FdLamaFirst, FdOpt, FdOptIpdb, SymkOpt
 from smash.planners.protocol import SolveOptions
 from smash.planners.registry import get_planner
 from smash.problem import Law, PlannerCrashed, PlanOptions, make_instance, read_instance
@@ -151,6 +151,38 @@ def test_killing_the_caller_leaves_no_engine(number):
     caller.communicate(timeout=10)
     _, alive = psutil.wait_procs(engines, timeout=3)
     assert not alive
+
+
+@pytest.mark.slow
+def test_aries_and_its_server_die_with_the_caller():
+    if Aries().missing():
+        pytest.skip("Aries is not installed")
+    solver = SLEEPER.replace("FdLama", "Aries").replace("60", "60.0")
+    caller = subprocess.Popen(
+        [sys.executable, "-c", solver, str(suite_files("multi-9")[0])],
+        stdout=subprocess.PIPE,
+        env={**os.environ, "PYTHONPATH": str(Path(planners.__file__).parents[1])},
+    )
+    family = psutil.Process(caller.pid)
+    deadline = time.monotonic() + 20
+    while not any("aries_linux" in child.name() for child in family.children(recursive=True)):
+        assert time.monotonic() < deadline
+        time.sleep(0.1)
+    engines = family.children(recursive=True)
+    caller.kill()
+    caller.communicate(timeout=10)
+    _, alive = psutil.wait_procs(engines, timeout=3)
+    assert not alive
+
+
+@pytest.mark.parametrize("planner", [Enhsp, Aries])
+def test_engines_of_other_worlds_solve_small_problems(planner):
+    if planner().missing():
+        pytest.skip(str(planner().missing()))
+    result = solve(planner(), figure_1(), budget=4.0)
+    assert result.status == "feasible"
+    assert not result.details.get("refused")
+    assert result.cost >= 3
 
 
 def test_the_registry_knows_the_baselines():
