@@ -17,6 +17,8 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "validate": ("smash.cli.validate", "judge a plan by the law"),
     "export-pddl": ("smash.cli.export_pddl", "write an instance as PDDL for any planner outside"),
     "planners": ("smash.cli.planners", "list the planners, what they support and what is missing"),
+    "certify": ("smash.cli.certify", "write down why no plan is cheaper"),
+    "verify": ("smash.cli.verify", "check a plan and its certificate of optimality, without a solver"),
     "import-blocks": ("smash.cli.import_blocks", "turn a blocks-world problem in PDDL into an instance"),
     "draw": ("smash.cli.draw", "draw a gadget, an instance, or a plan as moving pebbles"),
     "sweep": ("smash.cli.sweep", "run an experiment file: planners, instances, budgets, buffers, variants"),

@@ -46,7 +46,7 @@ class CycleFinder:
         """
         weight = freedom + TIE
         candidates = self.sources[freedom[self.sources] < below]
-        found: dict[tuple[int, ...], float] = {}
+        found: dict[frozenset[int], tuple[float, tuple[int, ...]]] = {}
         chunk = 512
         for begin in range(0, len(candidates), chunk):
             sources = candidates[begin : begin + chunk]
@@ -57,8 +57,8 @@ class CycleFinder:
                 cycle = self._trace(int(sources[column]), removal[:, column], placement[:, column], weight)
                 total = float(freedom[list(cycle)].sum())
                 if total < below:
-                    found[tuple(sorted(cycle))] = total
-        ordered = sorted(found, key=lambda cycle: (found[cycle], cycle))
+                    found.setdefault(frozenset(cycle), (total, cycle))
+        ordered = [cycle for _, cycle in sorted(found.values())]
         return ordered if most is None else ordered[:most]
 
     def _distances(self, sources: Ints, weight: Floats, below: float) -> tuple[Floats, Floats]:
@@ -125,10 +125,17 @@ class CycleFinder:
             used.append(block)
 
     def _shortened(self, used: list[int]) -> tuple[int, ...]:
-        """Drop the source where a block above it in its pile is used: that block's removal leads on by itself."""
-        source, others = used[0], used[1:]
-        pile = self._pile_of[source]
-        return tuple(others) if any(self._pile_of[other] == pile for other in others) else tuple(used)
+        """Return the cycle in its direction: the removal of each block comes before the placement of the next.
+
+        A path may come back to the source's pile above the source; that block then closes a cycle by itself,
+        without the source, as its removal comes before all that follows the source's.
+        """
+        forward = used[::-1]
+        pile = self._pile_of[used[0]]
+        for position, block in enumerate(forward):
+            if self._pile_of[block] == pile:
+                return tuple(forward[: position + 1])
+        raise AssertionError("the source lies on its cycle")  # pragma: no cover
 
     def _entry_of_chain(self, block: int, source: int, value: float, removal: Floats, placement: Floats) -> int:
         """Return the block by whose removal the path entered the chain of `block`, -1 where the source starts there."""

@@ -1,0 +1,40 @@
+"""`smash verify INSTANCE PLAN CERTIFICATE`: is the plan legal, and is its bound proven?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from smash.cli import fail
+from smash.problem.certificate import proven_bound, read_certificate
+from smash.problem.files import read_instance, read_plan
+from smash.problem.plan import check_plan
+
+
+@click.command("verify")
+@click.argument("instance", type=click.Path(path_type=Path))
+@click.argument("plan", type=click.Path(path_type=Path))
+@click.argument("certificate", type=click.Path(path_type=Path))
+def command(instance: Path, plan: Path, certificate: Path) -> None:
+    r"""Check PLAN by the law and CERTIFICATE from the ground up, without a solver.
+
+    Exit 0 where the certificate proves the plan's lower bound (an optimal plan's cost), 3 where it does not.
+
+    \b
+    Example:
+      smash plan examples/figure1.json --out plan.json
+      smash certify examples/figure1.json plan.json --out proof.json
+      smash verify examples/figure1.json plan.json proof.json
+    """
+    problem, filed = read_instance(instance), read_plan(plan)
+    verdict = check_plan(problem, filed)
+    if not verdict.accepted:
+        fail(f"{plan}: {verdict}", 3)
+    bound = proven_bound(problem, filed.options, read_certificate(certificate))
+    if filed.cost == bound:
+        click.echo(f"verified: legal, and no plan has fewer than its {bound} actions")
+    elif filed.lower_bound is None or filed.lower_bound <= bound:
+        click.echo(f"verified: legal with {filed.cost} actions, and no plan has fewer than {bound}")
+    else:
+        fail(f"{certificate}: proves the lower bound {bound}, the plan claims {filed.lower_bound}", 3)

@@ -1,0 +1,216 @@
+"""Writing certificates: cycles with dual weights, in a tree of cases where the relaxation leaves a gap.
+
+The weights are the LP's dual values, scaled down until they are feasible in whole millionths, so that what is
+written is exact whatever the solver's tolerances were. Checked by `smash.problem.certificate`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from time import perf_counter
+
+import highspy
+import numpy as np
+
+from smash.planners.precedence.cycles import CycleFinder
+from smash.planners.precedence.dive import dive
+from smash.planners.precedence.graph import Floats, PrecedenceGraph, build_graph
+from smash.problem.certificate import ONE, Cases, Certificate, Leaf
+from smash.problem.model import Instance, PlanOptions
+
+Fixed = dict[int, int]
+"""Choices that a case fixes: 1 taken, 0 not."""
+
+
+def certify(
+    instance: Instance, options: PlanOptions, deadline: float, known: Iterable[tuple[int, ...]] = ()
+) -> Certificate:
+    """Prove as good a lower bound as the time allows, and return the proof.
+
+    Args:
+        instance: a feasible problem.
+        options: topple or not, and its cap.
+        deadline: when to stop, in seconds of `time.perf_counter`; the certificate then proves what it can.
+        known: cycles found before (`HittingSet.cycles`), to start from.
+    """
+    prover = _Prover(build_graph(instance, options), deadline)
+    for cycle in known:
+        prover.add(cycle)
+    proof, bound, target = prover.prove()
+    graph = prover.graph
+    used = sorted(_rows_of(proof))
+    rank = {row: position for position, row in enumerate(used)}
+    note = "" if bound >= target else f"no compact proof found of more than {graph.base_cost + bound}"
+    return Certificate(
+        format="smash-certificate/1",
+        instance=instance.name,
+        topple=options.topple,
+        max_topple=options.max_topple,
+        bound=graph.base_cost + bound,
+        cycles=[[graph.blocks[block] for block in prover.cycles[row]] for row in used],
+        proof=_renumbered(proof, rank),
+        note=note,
+    )
+
+
+class _Prover:
+    """Branch and bound over the choices with exact bounds; cuts found in one case serve all."""
+
+    def __init__(self, graph: PrecedenceGraph, deadline: float) -> None:
+        self.graph = graph
+        self.deadline = deadline
+        self.cycles: list[tuple[int, ...]] = []
+        self._rows: list[list[int]] = []
+        self._known: set[frozenset[int]] = set()
+        self._finder = CycleFinder(graph)
+        self._costs = graph.costs
+        self._unit = int(np.gcd.reduce(self._costs.astype(int))) if len(self._costs) else 1
+        self._sent = 0
+        self._model = highspy.Highs()
+        self._model.silent()
+        count = len(self._costs)
+        if count:
+            self._model.addCols(count, self._costs, np.zeros(count), np.ones(count), 0, [], [], [])
+        for block in graph.must_free:
+            self.add((block,))
+
+    def add(self, cycle: tuple[int, ...]) -> bool:
+        """Take up a cycle; whether it was new."""
+        row = self.graph.row(cycle)
+        if row in self._known:
+            return False
+        self._known.add(row)
+        self.cycles.append(cycle)
+        self._rows.append(sorted(row))
+        return True
+
+    def prove(self) -> tuple[Leaf | Cases, int, int]:
+        """Return the proof, the bound that it gives and the cost of the best choices known (without the base cost)."""
+        graph = self.graph
+        best = int(sum(graph.choices[choice].cost for choice in dive(graph)))
+        if not best:
+            return Leaf([]), 0, 0
+        root, values, bound = self._leaf({})
+        if values is not None:
+            best = min(best, int(sum(graph.choices[choice].cost for choice in dive(graph, values))))
+        if bound >= best or values is None:
+            return root, bound, best
+        self._best = best
+        proof: Leaf | Cases = root
+        proven = bound
+        while proven < self._best and perf_counter() < self.deadline:
+            deeper, reached = self._branch({}, proven + self._unit)
+            if reached <= proven:
+                break
+            proof, proven = deeper, reached
+        return proof, proven, self._best
+
+    def _branch(self, fixed: Fixed, target: int) -> tuple[Leaf | Cases, int]:
+        """Return a proof for the case `fixed` and its bound, below `target` if time ran out or that is not true."""
+        leaf, values, bound = self._leaf(fixed)
+        if bound >= target or values is None or perf_counter() > self.deadline:
+            return leaf, bound
+        chosen = dive(self.graph, values)
+        self._best = min(self._best, int(sum(self.graph.choices[choice].cost for choice in chosen)))
+        if self._best < target:
+            return leaf, bound
+        open_values = np.where(np.isin(np.arange(len(values)), list(fixed)), 0.0, np.abs(values - np.round(values)))
+        choice = int(np.argmax(open_values))
+        if open_values[choice] < 1e-6:
+            return leaf, bound  # an integer solution below the target: the target is not true
+        taken, taken_bound = self._branch({**fixed, choice: 1}, target)
+        if taken_bound < target:
+            return leaf, bound
+        untaken, untaken_bound = self._branch({**fixed, choice: 0}, target)
+        if untaken_bound < target:
+            return leaf, bound
+        key = self._key(choice)
+        return Cases(key, taken, untaken), min(taken_bound, untaken_bound)
+
+    def _key(self, choice: int) -> list[str | int]:
+        location, low, high, topple = self.graph.choices[choice]
+        if topple:
+            return ["topple", location, low, high]
+        return ["aside", next(b for b in self._blocks_of(choice))]
+
+    def _blocks_of(self, choice: int) -> list[str]:
+        graph = self.graph
+        freed = np.flatnonzero((graph.choice_low <= choice) & (choice < graph.choice_high))
+        return [graph.blocks[int(block)] for block in freed]
+
+    def _leaf(self, fixed: Fixed) -> tuple[Leaf, Floats | None, int]:
+        """Cut the relaxation of a case until no cycle is violated; its weights, solution (None: no more) and bound."""
+        count = len(self._costs)
+        # No upper bounds on free choices: their duals would have to go into the certificate too.
+        low, high = np.zeros(count), np.full(count, highspy.kHighsInf)
+        for choice, value in fixed.items():
+            low[choice] = high[choice] = value
+        indices = np.arange(count, dtype=np.int32)
+        self._model.changeColsBounds(count, indices, low, high)
+        leaf, values, bound = Leaf([]), None, 0
+        while True:
+            self._send()
+            left = self.deadline - perf_counter()
+            if left <= 0:
+                return leaf, None, bound
+            self._model.clearSolver()
+            self._model.setOptionValue("time_limit", left)
+            self._model.run()
+            if self._model.getModelStatus() == highspy.HighsModelStatus.kInfeasible:
+                impossible, beyond = self._impossible(fixed)
+                return impossible, None, beyond
+            if self._model.getModelStatus() != highspy.HighsModelStatus.kOptimal:
+                return leaf, None, bound
+            solution = self._model.getSolution()
+            values = np.array(solution.col_value)
+            leaf, bound = self._weights(np.array(solution.row_dual), fixed)
+            cycles = self._finder.violated(self.graph.freedom(values), 1.0 - 1e-3)
+            if not sum([self.add(cycle) for cycle in cycles]):
+                return leaf, values, bound
+
+    def _weights(self, duals: Floats, fixed: Fixed) -> tuple[Leaf, int]:
+        """Round dual values to exact weights of the case; return them and the bound that they give."""
+        taken = {choice for choice, value in fixed.items() if value}
+        rows = [row for row, dual in enumerate(duals) if dual > 1e-9 and taken.isdisjoint(self._rows[row])]
+        load = np.zeros(len(self._costs))
+        for row in rows:
+            load[self._rows[row]] += duals[row]
+        for choice, value in fixed.items():
+            if value == 0:
+                load[choice] = 0.0
+        excess = float((load / self._costs).max(initial=0.0))
+        scale = 1.0 / (max(excess, 1.0) * (1.0 + 1e-9))
+        weights = [(row, int(duals[row] * scale * ONE)) for row in rows]
+        leaf = Leaf([(row, weight) for row, weight in weights if weight])
+        total = ONE * int(self._costs[list(taken)].sum()) + sum(weight for _, weight in leaf.weights)
+        return leaf, -(-total // (ONE * self._unit)) * self._unit
+
+    def _impossible(self, fixed: Fixed) -> tuple[Leaf, int]:
+        """Close a case that bans all that hits some cycle: no weight on that cycle is too much."""
+        banned = {choice for choice, value in fixed.items() if not value}
+        row = next(row for row, choices in enumerate(self._rows) if banned.issuperset(choices))
+        bound = int(self._costs.sum()) + self._unit
+        return Leaf([(row, ONE * bound)]), bound
+
+    def _send(self) -> None:
+        fresh = self._rows[self._sent :]
+        if not fresh:
+            return
+        starts = np.concatenate(([0], np.cumsum([len(row) for row in fresh])[:-1])).astype(np.int32)
+        columns = np.array([choice for row in fresh for choice in row], dtype=np.int32)
+        count = len(fresh)
+        infinity = np.full(count, highspy.kHighsInf)
+        self._model.addRows(count, np.ones(count), infinity, len(columns), starts, columns, np.ones(len(columns)))
+        self._sent = len(self._rows)
+
+
+def _rows_of(proof: Leaf | Cases) -> set[int]:
+    if isinstance(proof, Leaf):
+        return {row for row, _ in proof.weights}
+    return _rows_of(proof.taken) | _rows_of(proof.untaken)
+
+
+def _renumbered(proof: Leaf | Cases, rank: dict[int, int]) -> Leaf | Cases:
+    if isinstance(proof, Leaf):
+        return Leaf([(rank[row], weight) for row, weight in proof.weights])
+    return Cases(proof.choice, _renumbered(proof.taken, rank), _renumbered(proof.untaken, rank))

@@ -1,0 +1,226 @@
+"""Certificates of optimality, and their checker: a lower bound that anyone can follow, without a solver.
+
+A certificate lists cycles of precedence (`docs/theory.md`). Cycle `[b, c, d]` claims that the first removal of b
+comes before the last placement of c, that of c before that of d, that of d before that of b; if each of the three moved
+once, straight to its place, its removal would be its placement, and each would come before itself. So at
+least one of them is toppled at its first removal or put aside: the cycle is *hit*. What hits all cycles for
+the least cost is bounded from below by weights on the cycles (linear programming duality), or by a tree of
+cases with weights at its leaves. The checker knows the instance and the law's actions, and nothing of the planner.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal, cast
+
+import msgspec
+
+from smash.problem.errors import MalformedFile
+from smash.problem.files import convert, parse_json, read_bytes
+from smash.problem.model import Instance, OnGoal, PlanOptions, StacksGoal
+
+ONE = 1_000_000
+"""Weights are whole millionths of an action."""
+
+
+class Leaf(msgspec.Struct, forbid_unknown_fields=True, tag_field="kind", tag="weights"):
+    """A case closed by weights: `[number of the cycle, millionths]` each."""
+
+    weights: list[tuple[int, int]]
+
+
+class Cases(msgspec.Struct, forbid_unknown_fields=True, tag_field="kind", tag="cases"):
+    """Two cases: a choice (`["aside", block]` or `["topple", location, low, high]`) is taken, or it is not."""
+
+    choice: list[str | int]
+    taken: Leaf | Cases
+    untaken: Leaf | Cases
+
+
+class Certificate(msgspec.Struct, forbid_unknown_fields=True):
+    """A `smash-certificate/1` document; `note` says what it does not prove."""
+
+    format: Literal["smash-certificate/1"]
+    instance: str
+    topple: bool
+    max_topple: int | None
+    bound: int
+    cycles: list[list[str]]
+    proof: Leaf | Cases
+    note: str = ""
+
+
+def read_certificate(path: str | os.PathLike[str]) -> Certificate:
+    """Read a `smash-certificate/1` file.
+
+    Raises:
+        MalformedFile: with one line that says where and what is allowed.
+    """
+    where = os.fspath(path)
+    return cast(Certificate, convert(parse_json(read_bytes(path), where), Certificate, where))
+
+
+def certificate_text(certificate: Certificate) -> str:
+    """Return the text of a `smash-certificate/1` file."""
+    return msgspec.json.format(msgspec.json.encode(certificate), indent=0).decode() + "\n"
+
+
+class RefusedCertificate(MalformedFile):
+    """A certificate that does not prove what it says."""
+
+    exit_code = 3
+
+    def __init__(self, problem: str) -> None:
+        super().__init__("certificate", problem)
+
+
+_Key = tuple[str | int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Choice:
+    blocks: frozenset[str]
+    cost: int
+
+
+def proven_bound(instance: Instance, options: PlanOptions, certificate: Certificate) -> int:
+    """Check a certificate from the ground up and return the lower bound that it proves.
+
+    Raises:
+        RefusedCertificate: with the step that does not hold.
+    """
+    if certificate.instance != instance.name:
+        raise RefusedCertificate(f"it is for instance {certificate.instance!r}, not {instance.name!r}")
+    if (certificate.topple, certificate.max_topple) != (options.topple, options.max_topple):
+        raise RefusedCertificate("its topple options are not those of the plan")
+    checker = _Checker(instance, options)
+    for number, cycle in enumerate(certificate.cycles):
+        checker.add_cycle(number, cycle)
+    bound = checker.base + checker.least(certificate.proof, frozenset(), frozenset())
+    if bound != certificate.bound:
+        raise RefusedCertificate(f"it states the bound {certificate.bound}, its proof gives {bound}")
+    return bound
+
+
+class _Checker:
+    """Derives from the instance which blocks move, in which order, and what can hit a cycle at which cost."""
+
+    def __init__(self, instance: Instance, options: PlanOptions) -> None:
+        goal = instance.goal
+        self.start = {location: pile for location, pile in instance.start.items() if pile}
+        if isinstance(goal, OnGoal):
+            self.towers: dict[str | int, tuple[str, ...]] = dict(enumerate(goal.towers()))
+            wrong = _wrong_relations(instance, goal)
+        else:
+            piles = goal.stacks if isinstance(goal, StacksGoal) else goal.stacks()
+            self.towers = {location: tuple(pile) for location, pile in piles.items()}
+            wrong = _wrong_positions(instance, {location: tuple(pile) for location, pile in piles.items()})
+        self.at: dict[str, tuple[str, int]] = {}
+        self.leaving: dict[str, tuple[str, ...]] = {}
+        for location, pile in self.start.items():
+            self.at.update((block, (location, height)) for height, block in enumerate(pile, start=1))
+            lowest = next((height for height, block in enumerate(pile) if block in wrong), len(pile))
+            self.leaving[location] = pile[lowest:]
+        self.leaves = {block for pile in self.leaving.values() for block in pile}
+        self.rank = {block: (key, rank) for key, tower in self.towers.items() for rank, block in enumerate(tower)}
+        self.placed = {block for block in self.rank if block in self.leaves or block not in self.at}
+        stacks = frozenset(instance.stacks) if options.topple else frozenset()
+        loose = self.leaves - self.placed
+        self.must_fall = {block for block in loose if self.at[block][0] in stacks}
+        self.base = 2 * (len(self.placed) + len(loose - self.must_fall))
+        self.choices: dict[_Key, _Choice] = {}
+        for location, pile in self.leaving.items():
+            if location in stacks:
+                size = min(options.max_topple or len(pile), len(pile))
+                for first in range(len(pile) - size + 1 if pile else 0):
+                    low = self.at[pile[first]][1]
+                    run = frozenset(pile[first : first + size])
+                    self.choices["topple", location, low, low + size - 1] = _Choice(run, 1)
+            else:
+                for block in self.placed.intersection(pile):
+                    self.choices["aside", block] = _Choice(frozenset({block}), 2)
+        self.unit = math.gcd(*(choice.cost for choice in self.choices.values())) if self.choices else 1
+        self.hit_by: list[list[_Key]] = []
+
+    def add_cycle(self, number: int, cycle: list[str]) -> None:
+        """Check one cycle and note what can hit it."""
+        if not cycle or not self.leaves.issuperset(cycle):
+            raise RefusedCertificate(f"cycle {number}: not every block of {cycle} has to leave its start pile")
+        if len(cycle) > 1 or cycle[0] not in self.must_fall:
+            for before, after in zip(cycle, [*cycle[1:], cycle[0]], strict=True):
+                if not self._precedes(before, after):
+                    text = f"the removal of {before!r} need not come before the placement of {after!r}"
+                    raise RefusedCertificate(f"cycle {number}: {text}")
+        self.hit_by.append([key for key, choice in self.choices.items() if not choice.blocks.isdisjoint(cycle)])
+
+    def _precedes(self, before: str, after: str) -> bool:
+        """Whether every plan removes `before` for the first time before it places `after` for the last time."""
+        if after not in self.placed:
+            return False
+        location, height = self.at[before]
+        tower, rank = self.rank[after]
+        for under in self.towers[tower][: rank + 1]:
+            if under not in self.placed:
+                if self.at[under][0] == location:
+                    return True  # the chain grows on a block that stays, and `before` is in the way above it
+                continue
+            if under in self.at and self.at[under][0] == location:
+                lower = self.at[under][1]
+                if lower < height or (lower == height and under != after):
+                    return True
+        return tower == location
+
+    def least(self, proof: Leaf | Cases, taken: frozenset[_Key], banned: frozenset[_Key]) -> int:
+        """Return what the choices cost at least, where those of `taken` are made and those of `banned` are not."""
+        if isinstance(proof, Cases):
+            key = tuple(proof.choice)
+            if key not in self.choices:
+                raise RefusedCertificate(f"a case distinguishes {list(key)}, which is no choice")
+            return min(self.least(proof.taken, taken | {key}, banned), self.least(proof.untaken, taken, banned | {key}))
+        total = ONE * sum(self.choices[key].cost for key in taken)
+        load: dict[_Key, int] = {}
+        for number, weight in proof.weights:
+            if not 0 <= number < len(self.hit_by) or weight < 0:
+                raise RefusedCertificate(f"a leaf gives cycle {number} the weight {weight}")
+            if taken.isdisjoint(self.hit_by[number]):
+                total += weight
+                for key in self.hit_by[number]:
+                    load[key] = load.get(key, 0) + weight
+        for key, weight in load.items():
+            if key not in banned and weight > ONE * self.choices[key].cost:
+                raise RefusedCertificate(f"the cycles hit by {list(key)} weigh more than it costs")
+        return -(-total // (ONE * self.unit)) * self.unit
+
+
+def _wrong_positions(instance: Instance, piles: dict[str, tuple[str, ...]]) -> set[str]:
+    """Return the blocks that stand where another is wanted, or are wanted elsewhere."""
+    wanted = {block: (location, rank) for location, pile in piles.items() for rank, block in enumerate(pile)}
+    wrong = set()
+    for location, pile in instance.start.items():
+        goal = piles.get(location, ())
+        for rank, block in enumerate(pile):
+            if wanted.get(block, (location, rank)) != (location, rank) or (rank < len(goal) and goal[rank] != block):
+                wrong.add(block)
+    return wrong
+
+
+def _wrong_relations(instance: Instance, goal: OnGoal) -> set[str]:
+    """Return the blocks that stand on another than wanted, or where another is wanted."""
+    carried = {under: upper for upper, under in goal.on.items()}
+    wrong = set()
+    for pile in instance.start.values():
+        for under, block in _pairs(pile):
+            misplaced = goal.on.get(block, under) != under or (block in goal.bottom and under is not None)
+            if misplaced or (under is not None and carried.get(under, block) != block):
+                wrong.add(block)
+    return wrong
+
+
+def _pairs(pile: Iterable[str]) -> Iterable[tuple[str | None, str]]:
+    under: str | None = None
+    for block in pile:
+        yield under, block
+        under = block
