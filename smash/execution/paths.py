@@ -73,7 +73,7 @@ def round_corners(waypoints: Waypoints, free: Callable[[Waypoints], bool]) -> Wa
     rounded = np.concatenate(pieces)
     # Two arcs that share a segment may meet in its middle.
     apart = np.any(np.abs(np.diff(rounded, axis=0)) > 1e-9, axis=1)
-    return rounded[np.concatenate([[True], apart])]
+    return np.asarray(rounded[np.concatenate([[True], apart])])
 
 
 def _rounded(waypoints: Waypoints, corner: int, room: float, free: Callable[[Waypoints], bool]) -> Waypoints:
