@@ -46,7 +46,7 @@ def read_trajectory(path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], 
     rows = np.empty((len(lines) - 1, len(HEADER)))
     for number, line in enumerate(lines[1:]):
         try:
-            rows[number] = [float(cell) for cell in line.split(",")]
+            rows[number] = np.array(line.split(",", len(HEADER)), dtype=np.float64).reshape(len(HEADER))
         except ValueError:
             problem = f"line {number + 2}: {len(HEADER)} numbers separated by commas are allowed"
             raise MalformedFile(os.fspath(path), problem) from None

@@ -22,7 +22,7 @@ def test_an_episode_without_a_motion_is_a_header_alone(tmp_path):
     assert joints.shape == (0, 7)
 
 
-@pytest.mark.parametrize("content", ["", "time,a\n", "HEADER\n1,2\n", "HEADER\n1,2,3,4,5,6,7,x\n"])
+@pytest.mark.parametrize("content", ["", "time,a\n", "HEADER\n1\n", "HEADER\n1,2\n", "HEADER\n1,2,3,4,5,6,7,x\n"])
 def test_another_file_is_refused_in_one_line(tmp_path, content):
     header = "time," + ",".join(f"panda_joint{number}" for number in range(1, 8))
     (tmp_path / "t.csv").write_text(content.replace("HEADER", header))
