@@ -32,6 +32,13 @@ class FlowPlanner(BasePlanner):
     summary: ClassVar[str] = "the paper's time-expanded flow on the gadget, as a MILP (HiGHS)"
     proves: ClassVar[bool] = True
 
+    def prepare(self) -> None:
+        """Load numpy, scipy's sparse matrices and HiGHS."""
+        import highspy  # noqa: F401
+        import scipy.sparse  # noqa: F401
+
+        import smash.planners.flow.search  # noqa: F401
+
     def solve(
         self,
         instance: Instance,

@@ -26,6 +26,8 @@ from smash.problem.model import Instance
 
 MOST_ARCS = 1_500_000
 """Arcs beyond which a model is not built: it would need some 10 GB and no solver would start on it in time."""
+ARCS_PER_SECOND = 100_000
+"""Arcs that are at least built in a second; a model that would take half the time left is not begun."""
 MOST_EDGES = 4_000_000
 """Edges of the gadget times pebbles beyond which the gadget itself is not walked through."""
 
@@ -103,11 +105,12 @@ class FlowSearch:
         """Build the model of a horizon.
 
         Raises:
-            TooLarge: where it has more than `MOST_ARCS` arcs.
+            TooLarge: where it has too many arcs for the memory or the time left.
         """
         arcs = count_arcs(self.scope, self.reaches, horizon)
-        if arcs > MOST_ARCS:
-            raise TooLarge(f"the flow model has {arcs:,} arcs at horizon {horizon}; at most {MOST_ARCS:,} are built")
+        most = min(MOST_ARCS, ARCS_PER_SECOND * (self.deadline - perf_counter()) / 2)
+        if arcs > most:
+            raise TooLarge(f"the flow model has {arcs:,} arcs at horizon {horizon}; at most {most:,.0f} are built here")
         return build(self.scope, self.reaches, horizon)
 
     def _solve(self, horizon: int) -> MilpResult:
