@@ -1,0 +1,87 @@
+"""Read the records of a sweep: `RESULTS/runs.jsonl`, one `smash-run/1` object a line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+RUN_FORMAT = "smash-run/1"
+
+
+class NoRecords(Exception):
+    """A directory without usable records; the message is one line."""
+
+
+def read_records(results: Path) -> list[dict[str, Any]]:
+    """Return the records of a results directory; a last line that a kill left half-written is left out.
+
+    Raises:
+        NoRecords: where there are none, or a line before the last is damaged.
+    """
+    path = results / "runs.jsonl"
+    try:
+        lines = path.read_bytes().splitlines()
+    except OSError as error:
+        raise NoRecords(f"{path}: cannot be read: {error.strerror}") from None
+    records = []
+    for number, line in enumerate(lines, start=1):
+        try:
+            record = json.loads(line)
+            if record["format"] != RUN_FORMAT:
+                raise NoRecords(f"{path}:{number}: format {record['format']!r}, not {RUN_FORMAT!r}")
+        except (ValueError, TypeError, KeyError):
+            if number == len(lines):
+                break
+            raise NoRecords(f"{path}:{number}: no {RUN_FORMAT} object") from None
+        records.append(record)
+    if not records:
+        raise NoRecords(f"{path}: no finished run")
+    return records
+
+
+def runs_table(records: list[dict[str, Any]]) -> pd.DataFrame:
+    """Return one row a run; nested fields (versions, machine, details, actions) stay in the records.
+
+    Columns of the record, and: `first_seconds`, `best_seconds` (time of the first and of the best incumbent,
+    NaN without a plan), `solved` (a plan that the law accepts), `proven` (its status is optimal).
+    """
+    plain = [{key: value for key, value in record.items() if not isinstance(value, (dict, list))} for record in records]
+    table = pd.DataFrame(plain)
+    traces = [legal_trace(record) for record in records]
+    table["first_seconds"] = [trace[0][0] if trace else float("nan") for trace in traces]
+    table["best_seconds"] = [trace[-1][0] if trace else float("nan") for trace in traces]
+    table["solved"] = [bool(trace) for trace in traces]
+    table["proven"] = table["solved"] & (table["status"] == "optimal")
+    table["cost"] = [trace[-1][1] if trace else float("nan") for trace in traces]
+    table["commit"] = [(record.get("commit") or {}).get("hash") for record in records]
+    return table
+
+
+def legal_trace(record: dict[str, Any]) -> list[tuple[float, int]]:
+    """Return (seconds, cost) of the incumbents that count; none where the law refused what the planner answered."""
+    if record["outcome"] == "refused":
+        return []
+    return [(float(seconds), int(cost)) for seconds, cost, _ in record["incumbents"]]
+
+
+def incumbents_table(records: list[dict[str, Any]]) -> pd.DataFrame:
+    """Return one row an incumbent: run key, number (from 1), seconds, cost, origin."""
+    rows = [
+        (record["key"], number, float(seconds), int(cost), origin)
+        for record in records
+        for number, (seconds, cost, origin) in enumerate(record["incumbents"], start=1)
+    ]
+    return pd.DataFrame(rows, columns=["key", "number", "seconds", "cost", "origin"])
+
+
+def steps_table(records: list[dict[str, Any]]) -> pd.DataFrame:
+    """Return one row a step of the best plan: run key, step (from 1), action and its two arguments."""
+    rows = [
+        (record["key"], step, action, str(first), str(second))
+        for record in records
+        for step, (action, first, second) in enumerate(record["actions"] or [], start=1)
+    ]
+    return pd.DataFrame(rows, columns=["key", "step", "action", "first", "second"])

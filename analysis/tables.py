@@ -1,0 +1,70 @@
+"""Tables beside the pictures, as CSV, Markdown and text."""
+
+from __future__ import annotations
+
+import pandas as pd
+
+from analysis.cells import wilson
+
+
+def mean_std(values: pd.Series[float], digits: int = 2) -> str:
+    """Return `mean ± std` as the paper prints it (sample standard deviation), or a dash without a value."""
+    known = values.dropna()
+    if known.empty:
+        return "–"
+    spread = known.std() if len(known) > 1 else 0.0
+    return f"{known.mean():.{digits}f} ± {spread:.{digits}f}"
+
+
+def median_iqr(values: pd.Series[float], digits: int = 2) -> str:
+    """Return `median [first quartile, third quartile]`, or a dash without a value."""
+    known = values.dropna()
+    if known.empty:
+        return "–"
+    low, middle, high = known.quantile([0.25, 0.5, 0.75])
+    return f"{middle:.{digits}f} [{low:.{digits}f}, {high:.{digits}f}]"
+
+
+def share(successes: int, trials: int) -> str:
+    """Return a share in percent with its 95 % Wilson interval."""
+    low, high = wilson(successes, trials)
+    return f"{100 * successes / trials:.0f} % [{100 * low:.0f}, {100 * high:.0f}]" if trials else "–"
+
+
+def ablation_table(runs: pd.DataFrame) -> pd.DataFrame:
+    """Return the table beside the heatmaps: per planner, suite, buffers and variant at the largest budget.
+
+    Args:
+        runs: `runs_table` without the cut-off runs.
+    """
+    largest = runs.groupby(["label", "suite"])["budget"].transform("max")
+    rows = []
+    for (label, suite, buffers, variant), part in runs[runs["budget"] == largest].groupby(
+        ["label", "suite", "buffers", "variant"]
+    ):
+        rows.append(
+            {
+                "planner": label,
+                "suite": suite,
+                "B": buffers,
+                "variant": variant,
+                "budget [s]": f"{part['budget'].iloc[0]:g}",
+                "runs": len(part),
+                "success": share(int(part["solved"].sum()), len(part)),
+                "actions, solved runs (mean ± std)": mean_std(part["cost"]),
+                "first plan [s] (median [IQR])": median_iqr(part["first_seconds"]),
+                "proven optimal": f"{part['proven'].sum()}/{len(part)}",
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def markdown(table: pd.DataFrame) -> str:
+    """Return a table as Markdown."""
+
+    def line(cells: list[str]) -> str:
+        return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+    head = [str(column) for column in table.columns]
+    body = [[str(cell) for cell in row] for row in table.itertuples(index=False)]
+    return "\n".join([line(head), line(["---"] * len(head)), *map(line, body)]) + "\n"
