@@ -90,7 +90,7 @@ def test_wilson_interval_of_nothing_and_of_all():
     assert (round(low, 3), high) == (0.839, 1.0)
 
 
-@pytest.mark.parametrize("variants", [("topple", "no-topple"), ("topple",)])
+@pytest.mark.parametrize("variants", [("topple", "no-topple"), pytest.param(("topple",), marks=pytest.mark.slow)])
 def test_pictures_tables_and_words_are_made(tmp_path, variants):
     runs = [record(n, [(0.5, 20 + n)], variant=v, buffers=b) for n in range(3) for v in variants for b in (0, 12)]
     files = make(write(tmp_path, runs), tmp_path / "out")
