@@ -1,0 +1,108 @@
+"""`smash compare SUITE --planner A --planner B …`: planners on the same problems, and a table of how they did."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from smash.cli.sweep import installed_runs, run_all
+from smash.experiments.experiment import Experiment, PlannerEntry, check_experiment
+from smash.experiments.job import DEFAULT_MEMORY
+from smash.problem.errors import Unsupported
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SHORT = {"first plan [s]": "first [s]", "best plan [s]": "best [s]", "cost, solved": "cost", "cost, common": "common"}
+"""The table's columns in a terminal, under shorter names and without intervals; the files hold them all."""
+
+
+@click.command("compare")
+@click.argument("suites", metavar="SUITE…", nargs=-1, required=True)
+@click.option("--planner", "planners", multiple=True, required=True, metavar="NAME", help="May stand several times.")
+@click.option("--budget", type=float, default=30.0, show_default=True, metavar="SECONDS", help="Wall time of a run.")
+@click.option("--buffers", type=int, multiple=True, metavar="B", help="Buffer counts (default: as filed).")
+@click.option("--variant", "variants", multiple=True, metavar="V", help="topple, no-topple, max-topple-M.")
+@click.option("--instances", type=click.IntRange(min=1), metavar="K", help="Only the first K of each suite.")
+@click.option("--memory", type=click.IntRange(min=1), default=DEFAULT_MEMORY, show_default=True, metavar="MIB")
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True)
+@click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="Runs at a time.")
+@click.option("--dask", metavar="ADDRESS", help="Run on the Dask scheduler at this address.")
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Default: runs/compare-SUITE….")
+def command(
+    suites: tuple[str, ...],
+    planners: tuple[str, ...],
+    budget: float,
+    buffers: tuple[int, ...],
+    variants: tuple[str, ...],
+    instances: int | None,
+    memory: int,
+    seed: int,
+    jobs: int,
+    dask: str | None,
+    out: Path | None,
+) -> None:
+    r"""Run every planner on every instance of each SUITE (a committed set or a directory) and compare.
+
+    The records go to OUT/runs.jsonl, tables and curves to OUT/comparison; stopped, it goes on where it was.
+
+    \b
+    Example:
+      smash compare multi-4 multi-9 --planner smash --planner smash-layered --planner fd-lama --jobs 2
+    """
+    try:
+        from analysis import comparison
+    except ImportError as error:
+        raise Unsupported(f"analysis is not installed ({error}): pip install 'smash-testbed[analysis]'") from None
+    name = "compare-" + "-".join(Path(suite).name or "here" for suite in suites)
+    experiment = Experiment(
+        name="compare",
+        suites=list(suites),
+        planners=[PlannerEntry(planner) for planner in planners],
+        budgets=[budget],
+        buffers=list(buffers) or None,
+        instances=instances,
+        variants=list(variants) or ["topple", "no-topple"],
+        seeds=[seed],
+        memory=memory,
+        jobs=jobs,
+    )
+    check_experiment(experiment, "smash compare")
+    out = out or Path("runs") / name
+    run_all(installed_runs(experiment, Path()), out, jobs, dask)
+    files = comparison.make(out, out / "comparison")
+    _show(comparison, out)
+    click.echo("\n".join(map(str, files)))
+
+
+def _show(comparison: Any, out: Path) -> None:
+    """Print the table, its settings as headings, and how the runs ended."""
+    runs = comparison.compared(comparison.comparable(comparison.read_records(out)))
+    table = comparison.comparison_table(runs)
+    for setting, part in table.groupby(comparison.GROUP, sort=True):
+        suite, blocks, count, variant = setting
+        short = part[["planner", "coverage", "proven", *SHORT, "gap to optimum"]].rename(columns=SHORT)
+        short = short.map(lambda cell: str(cell).split(" [")[0])
+        _print(short, f"{suite}: {blocks} blocks, {count} buffers, {variant} (times are medians, costs mean ± std)")
+    _print(comparison.outcome_table(runs), "how the runs ended")
+    failures = comparison.failure_table(runs)
+    if len(failures):
+        _print(failures, "failures")
+
+
+def _print(rows: pd.DataFrame, title: str) -> None:
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    console = Console()
+    if not console.is_terminal:
+        console.width = 120
+    table = Table(title=Text(title), title_justify="left")
+    for column in rows.columns:
+        table.add_column(Text(str(column)), overflow="fold", no_wrap=column == "planner")
+    for row in rows.itertuples(index=False):
+        table.add_row(*(Text(str(cell)) for cell in row))
+    console.print(table)

@@ -1,0 +1,87 @@
+"""The comparison's figures: common subsets, gaps, contradictions, failures, curves."""
+
+import math
+
+import numpy as np
+import pytest
+
+from analysis.comparison import compared, comparison_table, failure_table, make, optima, outcome_table
+from analysis.curves import best_known, coverage_curve, quality_curve
+from tests.analysis.made_up import record, write
+
+
+def one(table, **where):
+    for name, value in where.items():
+        table = table[table[name] == value]
+    assert len(table) == 1
+    return table.iloc[0]
+
+
+def test_common_costs_are_over_problems_that_every_able_planner_solved():
+    runs = [
+        record(0, [(1.0, 10)], label="a"),
+        record(1, [(1.0, 30)], label="a"),
+        record(0, [(1.0, 12)], label="b"),
+        record(1, label="b"),
+        record(0, label="never"),
+        record(1, label="never"),
+    ]
+    table = comparison_table(compared(runs))
+    assert one(table, planner="a")["cost, common"] == "10.00 ± 0.00 (n=1)"
+    assert one(table, planner="a")["cost, solved"] == "20.00 ± 14.14"
+    assert one(table, planner="never")["coverage"] == "0/2"
+
+
+def test_gaps_are_to_proven_optima_only():
+    runs = [
+        record(0, [(1.0, 10)], label="a", status="optimal", lower_bound=10),
+        record(0, [(1.0, 12)], label="b"),
+        record(1, [(1.0, 9)], label="b"),
+    ]
+    gaps = compared(runs)["gap"].tolist()
+    assert gaps[:2] == pytest.approx([0.0, 0.2])
+    assert math.isnan(gaps[2])
+
+
+@pytest.mark.parametrize(
+    ("other", "words"),
+    [
+        ({"trace": [(1.0, 9)], "status": "optimal", "lower_bound": 9}, "b proves 9"),
+        ({"trace": [(1.0, 9)]}, "a proves at least 10, b has 9"),
+        ({"trace": [], "status": "infeasible"}, "b proves it infeasible, a has a plan"),
+    ],
+)
+def test_contradictions_between_planners_are_said(other, words):
+    runs = [record(0, [(1.0, 10)], label="a", status="optimal", lower_bound=10), record(0, label="b", **other)]
+    _, wrong = optima(runs)
+    assert any(words in line for line in wrong)
+
+
+def test_planners_that_agree_contradict_nothing():
+    runs = [record(0, [(1.0, 10)], label=x, status="optimal", lower_bound=10) for x in "ab"]
+    assert optima(runs) == ({("h0", "topple"): 10}, [])
+
+
+def test_every_failure_is_counted_with_its_reason():
+    runs = compared([record(0, outcome="crashed", reason="boom"), record(1), record(2, [(0.1, 3)])])
+    assert failure_table(runs)["reason"].tolist() == ["boom", "no plan by the budget"]
+    assert one(outcome_table(runs), planner="p")["feasible"] == 1
+
+
+def test_curves_count_every_problem_at_every_time():
+    runs = [record(0, [(0.5, 20), (2.0, 10)]), record(1)]
+    times = np.array([0.1, 1.0, 10.0])
+    assert coverage_curve(runs, times).tolist() == [0, 0.5, 0.5]
+    assert quality_curve(runs, best_known(runs), times).tolist() == [0, 0.25, 0.5]
+
+
+def test_a_problem_that_is_solved_at_the_start_has_full_quality():
+    runs = [record(0, [(0.0, 0)])]
+    assert quality_curve(runs, best_known(runs), np.array([1.0])).tolist() == [1.0]
+
+
+@pytest.mark.slow
+def test_tables_and_curves_are_made(tmp_path):
+    runs = [record(n, [(0.5, 9)], variant=v, label=x) for n in range(2) for v in ("topple", "no-topple") for x in "ab"]
+    files = make(write(tmp_path, runs), tmp_path / "out")
+    assert all(file.stat().st_size > 0 for file in files)

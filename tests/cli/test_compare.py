@@ -1,0 +1,30 @@
+"""`smash compare`: one command from instances to a table and its files."""
+
+import subprocess
+import sys
+
+import pytest
+
+
+@pytest.mark.usefixtures("third_party")
+def test_planners_are_run_and_compared(tower_file, tmp_path):
+    suite = tmp_path / "suite"
+    suite.mkdir()
+    tower_file.rename(suite / "tower.json")
+    names = [word for name in ("sound", "bare", "raises", "lacks") for word in ("--planner", name)]
+    command = [sys.executable, "-m", "smash", "compare", suite, *names, "--variant", "topple", "--budget", 2]
+    ended = subprocess.run(
+        list(map(str, [*command, "--out", tmp_path / "out"])), capture_output=True, text=True, timeout=100
+    )
+    assert ended.returncode == 0, ended.stderr
+    assert "pip install luck; its 1 runs are left out" in ended.stderr
+    assert "ValueError: no luck" in ended.stdout
+    assert "Contradictions" in (tmp_path / "out" / "comparison" / "comparison.md").read_text()
+
+
+@pytest.mark.parametrize("wrong", [["--planner", "nobody"], ["--planner", "greedy", "--variant", "x"], []])
+def test_bad_settings_are_one_line(tmp_path, wrong):
+    command = [sys.executable, "-m", "smash", "compare", "multi-4", *wrong, "--out", str(tmp_path / "out")]
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert ended.returncode == 2
+    assert ended.stderr.count("\n") == 1
