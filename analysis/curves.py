@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8C8C00")
 DASHES = ("-", "--", "-.", ":")
-"""Okabe and Ito's colours for every kind of colour vision; line styles tell curves apart in grey and where they meet."""
+"""Okabe and Ito's colours for every kind of colour vision; line styles tell curves apart in grey."""
 EARLIEST = 0.01
 """Where the time axis begins [s]."""
 
