@@ -13,6 +13,10 @@ from smash.problem.model import Action, Instance, PlanOptions
 
 ORIGIN = "precedence"
 """The `bound_origin` of the bounds proven here."""
+SHORT = 0.2
+"""Seconds that any schedule may take."""
+RESERVE = 2.0
+"""How often the time of the schedule before is kept for the last one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,8 +66,10 @@ def precedence_bound(
     """
     graph = build_graph(instance, options)
     plans = _Plans(instance, options, graph, deadline, on_plan, on_no_plan)
-    found = HittingSetSolver(graph, threads).solve(deadline, plans.offer)
-    plans.offer(found.chosen, last=True)
+    solver = HittingSetSolver(graph, threads)
+    plans.offer(solver.start(deadline), 0.1)
+    found = solver.solve(deadline - plans.reserve, plans.offer)
+    plans.offer(found.chosen, 1.0)
     relaxed = graph.base_cost + sum(graph.choices[choice].cost for choice in found.chosen)
     return PrecedenceBound(graph.base_cost + found.bound, relaxed, plans.best, graph, found)
 
@@ -89,18 +95,25 @@ class _Plans:
         self.best: tuple[Action, ...] | None = None
         self._scheduled: set[int] | None = None
         self._idle_until = 0.0
+        self._took = 0.0
 
-    def offer(self, chosen: set[int], last: bool = False) -> None:
-        """Schedule a choice, unless scheduling the one before took long and this is not the `last`."""
+    @property
+    def reserve(self) -> float:
+        """Seconds to keep for the last schedule, at most a tenth of the time left."""
+        return min(RESERVE * self._took, 0.1 * max(0.0, self.deadline - perf_counter()))
+
+    def offer(self, chosen: set[int], share: float = 0.0) -> None:
+        """Schedule a choice, within a `share` of the time left; with share 0 only if that is quick enough."""
         started = perf_counter()
-        if chosen == self._scheduled or (started < self._idle_until and not last):
+        if chosen == self._scheduled or (started < self._idle_until and not share):
             return
         self._scheduled = set(chosen)
         graph = self.graph
         scheduler = Scheduler(self.instance, graph.demands, chosen_of(graph.choices, chosen), self.options.max_topple)
-        limit = self.deadline if last else min(self.deadline, started + 0.2)
-        actions = scheduler.plan(limit)
-        self._idle_until = perf_counter() + 5 * (perf_counter() - started)
+        limit = started + max(SHORT, share * (self.deadline - started))
+        actions = scheduler.plan(min(self.deadline, limit))
+        self._took = perf_counter() - started
+        self._idle_until = perf_counter() + 5 * self._took
         if actions is None and self.best is None and self.on_no_plan is not None:
             self.on_no_plan()
             self.on_no_plan = None

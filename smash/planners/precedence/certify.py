@@ -36,11 +36,11 @@ def certify(
     prover = _Prover(build_graph(instance, options), deadline)
     for cycle in known:
         prover.add(cycle)
-    proof, bound, target = prover.prove()
+    proof, bound = prover.prove()
     graph = prover.graph
     used = sorted(_rows_of(proof))
     rank = {row: position for position, row in enumerate(used)}
-    note = "" if bound >= target else f"no compact proof found of more than {graph.base_cost + bound}"
+    note = "the time ran out before more was proven" if perf_counter() > deadline else ""
     return Certificate(
         format="smash-certificate/1",
         instance=instance.name,
@@ -84,35 +84,30 @@ class _Prover:
         self._rows.append(sorted(row))
         return True
 
-    def prove(self) -> tuple[Leaf | Cases, int, int]:
-        """Return the proof, the bound that it gives and the cost of the best choices known (without the base cost)."""
+    def prove(self) -> tuple[Leaf | Cases, int]:
+        """Return the best proof and the bound that it gives (without the base cost)."""
         graph = self.graph
         best = int(sum(graph.choices[choice].cost for choice in dive(graph)))
         if not best:
-            return Leaf([]), 0, 0
+            return Leaf([]), 0
         root, values, bound = self._leaf({})
         if values is not None:
             best = min(best, int(sum(graph.choices[choice].cost for choice in dive(graph, values))))
         if bound >= best or values is None:
-            return root, bound, best
-        self._best = best
+            return root, bound
         proof: Leaf | Cases = root
         proven = bound
-        while proven < self._best and perf_counter() < self.deadline:
+        while proven < best and perf_counter() < self.deadline:
             deeper, reached = self._branch({}, proven + self._unit)
             if reached <= proven:
                 break
             proof, proven = deeper, reached
-        return proof, proven, self._best
+        return proof, proven
 
     def _branch(self, fixed: Fixed, target: int) -> tuple[Leaf | Cases, int]:
         """Return a proof for the case `fixed` and its bound, below `target` if time ran out or that is not true."""
         leaf, values, bound = self._leaf(fixed)
         if bound >= target or values is None or perf_counter() > self.deadline:
-            return leaf, bound
-        chosen = dive(self.graph, values)
-        self._best = min(self._best, int(sum(self.graph.choices[choice].cost for choice in chosen)))
-        if self._best < target:
             return leaf, bound
         open_values = np.where(np.isin(np.arange(len(values)), list(fixed)), 0.0, np.abs(values - np.round(values)))
         choice = int(np.argmax(open_values))
@@ -164,7 +159,7 @@ class _Prover:
             solution = self._model.getSolution()
             values = np.array(solution.col_value)
             leaf, bound = self._weights(np.array(solution.row_dual), fixed)
-            cycles = self._finder.violated(self.graph.freedom(values), 1.0 - 1e-3)
+            cycles = self._finder.violated(self.graph.freedom(values), 1.0 - 1e-3, self.deadline)
             if not sum([self.add(cycle) for cycle in cycles]):
                 return leaf, values, bound
 

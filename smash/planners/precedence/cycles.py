@@ -8,12 +8,15 @@ few passes over a blocks x blocks matrix, and there are as many rounds as back e
 
 from __future__ import annotations
 
+from time import perf_counter
+
 import numpy as np
 
 from smash.planners.precedence.graph import Floats, Ints, PrecedenceGraph
 
 TIE = 1e-6
 """Added to each back edge, so that of two equally cheap paths the one through fewer blocks is taken."""
+SOURCES_AT_ONCE = 256
 
 
 class CycleFinder:
@@ -36,20 +39,21 @@ class CycleFinder:
         }
         self.sources: Ints = np.flatnonzero(graph.placed & (self._pile_of >= 0))
 
-    def violated(self, freedom: Floats, below: float, most: int | None = None) -> list[tuple[int, ...]]:
+    def violated(self, freedom: Floats, below: float, deadline: float = np.inf) -> list[tuple[int, ...]]:
         """Return cycles whose blocks' freedom sums to less than `below`, each as the blocks of its back edges.
 
         Args:
             freedom: per block, how far it is freed (`PrecedenceGraph.freedom`).
             below: the sum from which on a cycle is not violated.
-            most: how many at most, the most violated first (None: one for every block that lies on one).
+            deadline: when to return what was found so far, in seconds of `time.perf_counter`.
         """
         weight = freedom + TIE
         candidates = self.sources[freedom[self.sources] < below]
         found: dict[frozenset[int], tuple[float, tuple[int, ...]]] = {}
-        chunk = 512
-        for begin in range(0, len(candidates), chunk):
-            sources = candidates[begin : begin + chunk]
+        for begin in range(0, len(candidates), SOURCES_AT_ONCE):
+            if perf_counter() > deadline:
+                break
+            sources = candidates[begin : begin + SOURCES_AT_ONCE]
             removal, placement = self._distances(sources, weight, below)
             columns = np.arange(len(sources))
             length = placement[sources, columns] + weight[sources]
@@ -58,8 +62,7 @@ class CycleFinder:
                 total = float(freedom[list(cycle)].sum())
                 if total < below:
                     found.setdefault(frozenset(cycle), (total, cycle))
-        ordered = [cycle for _, cycle in sorted(found.values())]
-        return ordered if most is None else ordered[:most]
+        return [cycle for _, cycle in sorted(found.values())]
 
     def _distances(self, sources: Ints, weight: Floats, below: float) -> tuple[Floats, Floats]:
         """Return the distances to each removal and to each placement, shape (blocks, sources), inf from `below` on."""

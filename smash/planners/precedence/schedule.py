@@ -25,7 +25,7 @@ MEMO_BLOCKS = 60
 
 @dataclass(slots=True)
 class Progress:
-    """How far a schedule has come. `remaining` counts leaving blocks still in their start pile."""
+    """How far a schedule has come: leaving blocks still in their start pile (`remaining`), those put aside so far."""
 
     piles: dict[str, list[str]]
     where: dict[str, str]
@@ -34,6 +34,7 @@ class Progress:
     chain_at: dict[str, int]
     segments: Segments
     waiting: set[str] = field(default_factory=set)
+    gone_aside: int = 0
     actions: list[Action] = field(default_factory=list)
 
     def copy(self) -> Progress:
@@ -46,6 +47,7 @@ class Progress:
             dict(self.chain_at),
             {location: list(segments) for location, segments in self.segments.items()},
             set(self.waiting),
+            self.gone_aside,
             list(self.actions),
         )
 
@@ -139,7 +141,12 @@ class Scheduler:
         """Do all that can be done without regret; return whether the goal is reached."""
         moved = True
         while moved:
-            moved = self._place_ready(state) or self._topple_ready(state) or self._move_loose(state)
+            moved = (
+                self._place_ready(state)
+                or self._topple_ready(state)
+                or self._move_loose(state)
+                or self._use_room(state)
+            )
         done = all(count == len(chain) for count, chain in zip(state.placed, self.chains, strict=True))
         return done and not any(state.remaining.values())
 
@@ -202,6 +209,27 @@ class Scheduler:
             if finished:
                 self._move(state, block, finished[0])
                 return True
+        return False
+
+    def _use_room(self, state: Progress) -> bool:
+        """Where every block and tower still to come can have a free location of its own, take one."""
+        needed = sum(not count for count in state.placed[len(self.demands.build) :])
+        needed += len(self.aside) - state.gone_aside + bool(self._loose_moves)
+        if self._riders and self._may_ride(state):
+            return False
+        free = self._free(state)
+        if len(free) < needed:
+            return False
+        for number in range(len(self.demands.build), len(self.chains)):
+            if not state.placed[number] and self._accessible(state, self.chains[number][0]):
+                self._place(state, self.chains[number][0], free[0])
+                return True
+        for block in self._tops_to_put_aside(state)[:1]:
+            self._put(state, block, free[0])
+            return True
+        for block in self._loose_tops(state)[:1]:
+            self._move(state, block, free[0])
+            return True
         return False
 
     # Alternatives
@@ -275,9 +303,13 @@ class Scheduler:
 
     def _put_aside(self, state: Progress, block: str, location: str) -> Progress:
         after = state.copy()
-        self._move(after, block, location)
-        after.waiting.add(block)
+        self._put(after, block, location)
         return after
+
+    def _put(self, state: Progress, block: str, location: str) -> None:
+        self._move(state, block, location)
+        state.waiting.add(block)
+        state.gone_aside += block in self.aside
 
     # Reading a state
 
