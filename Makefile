@@ -13,6 +13,7 @@ help: ## list the targets
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[analysis,pddl,execution,cluster,dev]'
+	$(BIN)/python -m smash.planners.warm
 	touch $@
 
 test: $(STAMP) ## run the tests (minutes); slow ones with `make test-slow`

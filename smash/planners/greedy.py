@@ -13,6 +13,7 @@ from smash.planners.line import line_steps
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
 from smash.planners.shorten import shorten
 from smash.planners.targets import Piles, target_piles
+from smash.problem.feasibility import why_infeasible
 from smash.problem.model import Instance, PlanOptions, State
 from smash.problem.rules import Law
 
@@ -36,13 +37,12 @@ class GreedyPlanner(BasePlanner):
     ) -> PlanResult:
         """Plan at once; improve for some passes, within `budget` seconds."""
         log = IncumbentLog(instance, options, on_incumbent)
+        reason = why_infeasible(instance, options)
+        if reason is not None:
+            return log.result(infeasible=True, bound_origin="feasibility", details={"reason": reason})
         problem = Indexed.of(instance)
-        found = False
         for steps in greedy_steps(problem, options, perf_counter() + budget, options.seed):
-            found = True
             log.offer(problem.actions(steps), "greedy")
-        if not found:
-            return log.result(infeasible=True, bound_origin="reachability")
         return log.result(lower_bound=0 if log.cost == 0 else None, bound_origin="start" if log.cost == 0 else None)
 
 

@@ -1,0 +1,45 @@
+"""The `astar` planner: greedy for the first plan, then exact search over states."""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import ClassVar
+
+from smash.planners.astar.driver import StateSearch
+from smash.planners.greedy import greedy_steps
+from smash.planners.indexed import Indexed
+from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
+from smash.problem.feasibility import why_infeasible
+from smash.problem.model import Instance
+
+
+class AStarPlanner(BasePlanner):
+    """Exact search over states with a bound from the precedence graph; memory-bounded."""
+
+    summary: ClassVar[str] = "exact search over states; best with few buffers"
+    proves: ClassVar[bool] = True
+
+    def solve(
+        self,
+        instance: Instance,
+        options: SolveOptions,
+        budget: float,
+        on_incumbent: OnIncumbent | None = None,
+    ) -> PlanResult:
+        """Search for at most `budget` seconds; where memory or time ends, the bound proven so far is reported."""
+        log = IncumbentLog(instance, options, on_incumbent)
+        deadline = perf_counter() + budget
+        reason = why_infeasible(instance, options)
+        if reason is not None:
+            return log.result(infeasible=True, bound_origin="feasibility", details={"reason": reason})
+        problem = Indexed.of(instance)
+        for steps in greedy_steps(problem, options, perf_counter() + budget / 10, options.seed):
+            log.offer(problem.actions(steps), "greedy")
+        assert log.cost is not None
+        search = StateSearch(problem, options, log.cost)
+        while search.ended is None and perf_counter() < deadline:
+            found = search.run(deadline)
+            if found is not None:
+                log.offer(problem.actions(found), "exact")
+        details = {"expanded": search.expanded, "ended": search.ended or "budget"}
+        return log.result(lower_bound=search.lower_bound, bound_origin="astar", details=details)

@@ -1,0 +1,98 @@
+"""Making and growing the node store, as lists (interpreted) or numpy arrays (compiled)."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from smash.planners.astar import search
+from smash.planners.astar.compiled import Code
+from smash.planners.astar.search import Store
+from smash.planners.astar.task import Ints, Task
+
+KINDS = {
+    "states": "u1",
+    "cost": "i2",
+    "estimate": "i2",
+    "parent": "i4",
+    "moved": "i2",
+    "code": "i2",
+    "following": "i4",
+    "stale": "u1",
+    "table": "i4",
+    "heads": "i4",
+    "counters": "i8",
+}
+"""The numpy type of each array."""
+PER_NODE = ("cost", "estimate", "parent", "moved", "code", "following", "stale")
+NODE_BYTES = 17 + 8
+"""Memory of a node beside its state: its entries, and its share of a hash table half full [bytes]."""
+MOST_MEMORY = 2 << 30
+"""The most memory that a search takes [bytes], if half of what is free is not less."""
+
+
+def zeros(size: int, kind: str, compiled: bool, value: int = 0) -> Ints:
+    """Return an array of `size` times `value`."""
+    if not compiled:
+        return [value] * size
+    import numpy as np
+
+    array: Any = np.full(size, value, dtype=kind)
+    return array  # type: ignore[no-any-return]
+
+
+def filled(values: list[int], compiled: bool, kind: str = "i8") -> Ints:
+    """Return `values` as an array."""
+    array = zeros(len(values), kind, compiled)
+    for index, value in enumerate(values):
+        array[index] = value
+    return array
+
+
+def make_store(task: Task, compiled: bool, nodes: int, first: int, upper: int) -> Store:
+    """Return an empty store for `nodes` nodes with estimates from `first` up to `upper`."""
+    table = table_size(nodes)
+    width = upper + 1
+    sizes = {"states": nodes * task.blocks, "table": table, "heads": (upper - first + 1) * width, "counters": 5}
+    arrays = {
+        name: zeros(sizes.get(name, nodes), kind, compiled, -1 if name == "heads" else 0)
+        for name, kind in KINDS.items()
+    }
+    store = Store(**arrays, shape=filled([first, width, nodes, table], compiled))
+    store.counters[search.UPPER] = upper
+    store.counters[search.BEST] = -1
+    store.counters[search.FLOOR] = first
+    return store
+
+
+def grown(task: Task, store: Store, nodes: int, code: Code, compiled: bool) -> Store:
+    """Return a store with room for `nodes` nodes and all that `store` holds."""
+    arrays: dict[str, Any] = store._asdict()
+    for name in ("states", *PER_NODE):
+        larger = zeros(nodes * (task.blocks if name == "states" else 1), KINDS[name], compiled)
+        larger[: len(arrays[name])] = arrays[name]
+        arrays[name] = larger
+    arrays["table"] = zeros(table_size(nodes), KINDS["table"], compiled)
+    arrays["shape"] = filled([*(int(entry) for entry in store.shape[:2]), nodes, len(arrays["table"])], compiled)
+    larger_store = Store(**arrays)
+    code.file_again(task, larger_store)
+    return larger_store
+
+
+def table_size(nodes: int) -> int:
+    """Return the size of the hash table: a power of two, at most half full."""
+    return 1 << max(4, (2 * nodes - 1).bit_length())
+
+
+def most_nodes(blocks: int, memory: int) -> int:
+    """Return how many nodes fit, when the last growth copies the largest array."""
+    return max(1, memory // (2 * blocks + NODE_BYTES + 8))
+
+
+def free_memory() -> int:
+    """Return how much memory a search may take: half of what is free, at most `MOST_MEMORY` [bytes]."""
+    try:
+        free = os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (ValueError, OSError):
+        return MOST_MEMORY
+    return min(MOST_MEMORY, free // 2)

@@ -1,0 +1,191 @@
+"""What the search knows, as integers: the instance, and the state in hand taken apart into piles.
+
+All of it stands in one sequence, `cells`: a list where the search is interpreted (nothing to import), a numpy
+array where it is compiled. `Task` says where each part begins: `cells[task.length + slot]` is the length of the
+pile in a slot. A state is filed as one byte per block: what is below it, that is a block `0 .. n-1`, the
+floor of a location of class c (`n + c`), or the table region (`n + classes`). Locations that nothing tells
+apart share a class, so that states which differ by their names only are one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import MutableSequence
+from typing import NamedTuple
+
+from smash.planners.indexed import Indexed
+from smash.planners.targets import Piles, goal_piles, towers_of
+from smash.problem.model import PlanOptions
+
+Ints = MutableSequence[int]
+MOST_CODES = 256
+"""What is below a block is filed in one byte."""
+TOPPLED = -1
+"""The second half of a move that topples: the first is the lowest block that falls."""
+
+
+class Task(NamedTuple):
+    """The problem's numbers, and where each part of `cells` begins.
+
+    A *line* is a sequence of blocks to be built: a location's goal pile, or a tower of an `on` goal. A *slot*
+    is a place for a pile; where lines have locations of their own, the first slots are theirs.
+    """
+
+    blocks: int
+    classes: int
+    lines: int
+    topple: int
+    """1 where topple is allowed."""
+    cap: int
+    """The most blocks of one topple."""
+    anywhere: int
+    """1 for `on` goals: a line is built at any location, else each at the location of its own class."""
+    tidy: int
+    """1 where a block that can go straight to its final place is moved there at once, and never leaves it."""
+
+    class_size: int
+    class_topple: int
+    """1 where the locations of the class can be toppled."""
+    class_line: int
+    """The line that is built at the one location of the class, or -1."""
+    line_first: int
+    """Where the line begins in `line_blocks`; one entry more, for the end of the last."""
+    line_blocks: int
+    line_class: int
+    """The class of the line's location, or -1."""
+    line_grounded: int
+    """1 where the line's first block must be at the bottom of a location."""
+    line_of: int
+    """Per block its line, or -1 where the goal does not list it."""
+    index_of: int
+    """Per block its place in its line, 0 for the first."""
+
+    content: int
+    """`slot * blocks + level`: the piles, bottom first."""
+    length: int
+    kind: int
+    """Per slot the class of its location."""
+    keep: int
+    """Per slot how many of its lowest blocks may stay for ever."""
+    slot_of: int
+    """Per block its slot, -1 in the table region."""
+    above: int
+    done: int
+    """Per line how many of its first blocks are right for good."""
+    anchor: int
+    """Per line the slot that it stands or must stand in, -1 for any."""
+    clear_at: int
+    """Per line the length of its slot's pile when the next block can be put on it."""
+    class_used: int
+    counters: int
+    """The number of slots in use."""
+    left: int
+    """Relaxed run: per slot the blocks not yet taken."""
+    built: int
+    """Relaxed run: per line the blocks placed."""
+    loose: int
+    """Relaxed run: per block 1 where it can be taken at any time."""
+    mark: int
+    lowest: int
+    listed: int
+    """The number of moves to try."""
+    moves: int
+    """Pairs (block, code) of the moves to try."""
+    trail: int
+    """Pairs (block, code) of the direct moves made by `settle`."""
+
+
+class Setting(NamedTuple):
+    """A task with its cells, the class of each location, and the start as a filed state."""
+
+    task: Task
+    cells: list[int]
+    class_of: list[int]
+    start: list[int]
+
+
+def make_setting(problem: Indexed, options: PlanOptions) -> Setting | None:
+    """Return the numbers of a problem, or None where a byte does not hold what can be below a block."""
+    wanted = goal_piles(problem)
+    topples = [int(options.topple and location < problem.stacks) for location in range(problem.locations)]
+    if wanted is None:
+        towers = towers_of(problem)
+        lines = tuple(tower.blocks for tower in towers)
+        grounded = [int(tower.grounded) for tower in towers]
+        keys = [(-1, topple) for topple in topples]
+    else:
+        at = [location for location, pile in enumerate(wanted) if pile]
+        lines = tuple(wanted[location] for location in at)
+        grounded = [1] * len(lines)
+        keys = [(at.index(location) if wanted[location] else -1, topple) for location, topple in enumerate(topples)]
+    kinds = sorted(set(keys), reverse=True)
+    if problem.blocks + len(kinds) + 1 > MOST_CODES:
+        return None
+    class_of = [kinds.index(key) for key in keys]
+    room = problem.stacks if options.topple else problem.locations
+    parts = {
+        "class_size": [class_of.count(number) for number in range(len(kinds))],
+        "class_topple": [topple for _, topple in kinds],
+        "class_line": [line for line, _ in kinds],
+        "line_class": [next((c for c, kind in enumerate(kinds) if kind[0] == line), -1) for line in range(len(lines))],
+        "line_grounded": grounded,
+        **_listed(lines, problem.blocks),
+        **_scratch(problem.blocks, len(lines), len(kinds)),
+    }
+    cells: list[int] = []
+    begins: dict[str, int] = {}
+    for name, values in parts.items():
+        begins[name] = len(cells)
+        cells += values
+    task = Task(
+        blocks=problem.blocks,
+        classes=len(kinds),
+        lines=len(lines),
+        topple=int(options.topple),
+        cap=min(problem.blocks, options.max_topple or problem.blocks),
+        anywhere=int(wanted is None),
+        tidy=int(wanted is not None or room >= problem.blocks),
+        **begins,
+    )
+    return Setting(task, cells, class_of, _filed(problem, class_of, len(kinds)))
+
+
+def _listed(lines: Piles, blocks: int) -> dict[str, list[int]]:
+    """Return the parts that hold the lines."""
+    line_of, index_of, first = [-1] * blocks, [0] * blocks, [0]
+    for number, line in enumerate(lines):
+        first.append(first[-1] + len(line))
+        for index, block in enumerate(line):
+            line_of[block], index_of[block] = number, index
+    return {
+        "line_first": first,
+        "line_blocks": [block for line in lines for block in line],
+        "line_of": line_of,
+        "index_of": index_of,
+    }
+
+
+def _scratch(blocks: int, lines: int, classes: int) -> dict[str, list[int]]:
+    """Return the parts that change: a state in hand has a slot a line, a pile, and a direct move at most."""
+    slots = lines + 2 * blocks + 2
+    sizes = {
+        **dict.fromkeys(("length", "kind", "keep", "left", "mark"), slots),
+        **dict.fromkeys(("slot_of", "above", "loose"), blocks),
+        **dict.fromkeys(("done", "anchor", "clear_at", "built", "lowest"), lines),
+        "content": slots * blocks,
+        "class_used": classes,
+        "counters": 1,
+        "listed": 1,
+        "moves": 2 * (blocks + 1) * (blocks + classes + 1),
+        "trail": 4 * blocks + 2,
+    }
+    return {name: [0] * size for name, size in sizes.items()}
+
+
+def _filed(problem: Indexed, class_of: list[int], classes: int) -> list[int]:
+    row = [problem.blocks + classes] * problem.blocks
+    for location, pile in enumerate(problem.start):
+        below = problem.blocks + class_of[location]
+        for block in pile:
+            row[block] = below
+            below = block
+    return row

@@ -1,0 +1,142 @@
+"""`smash`, the default planner: greedy at once, then the exact methods, cheapest first, under one budget."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from time import perf_counter
+from typing import Any, ClassVar
+
+from smash.planners.astar import StateSearch
+from smash.planners.greedy import greedy_steps
+from smash.planners.indexed import Indexed
+from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
+from smash.problem.feasibility import why_infeasible
+from smash.problem.model import Action, Instance
+
+SPARE_SECONDS = 0.05
+"""Kept back from the budget for the end of the last part."""
+GREEDY_SHARE = 0.1
+"""Share of the budget within which the greedy planner improves its plan."""
+LIGHT_SECONDS = 0.12
+"""For the interpreted search: what it proves needs no library to be loaded."""
+SMALL_BLOCKS = 12
+"""Up to so many blocks the search over states comes before the precedence graph."""
+SEARCH_SHARE = 0.6
+"""Share of the remaining budget for the search over states before the layered model gets its turn."""
+PRECEDENCE_SHARE = 0.3
+"""Share of the remaining budget for the precedence graph where the other exact methods have a chance too."""
+FEW_BLOCKS = 40
+"""With more blocks than this the search over states and the layered model prove nothing more."""
+
+
+class SmashPlanner(BasePlanner):
+    """The best anytime answer and the best proof that the package can give, its parts combined."""
+
+    summary: ClassVar[str] = "the default: greedy, precedence graph, search over states and layered model combined"
+    proves: ClassVar[bool] = True
+
+    def solve(
+        self,
+        instance: Instance,
+        options: SolveOptions,
+        budget: float,
+        on_incumbent: OnIncumbent | None = None,
+    ) -> PlanResult:
+        """Plan for at most `budget` seconds of wall time; ends as soon as the best plan is proven optimal."""
+        log = IncumbentLog(instance, options, on_incumbent)
+        reason = why_infeasible(instance, options)
+        if reason is not None:
+            return log.result(infeasible=True, bound_origin="feasibility", details={"reason": reason})
+        return _Combined(instance, options, budget, log).run()
+
+
+class _Combined:
+    """One solve: the parts share the incumbents of `log` and the best bound."""
+
+    def __init__(self, instance: Instance, options: SolveOptions, budget: float, log: IncumbentLog) -> None:
+        self.instance = instance
+        self.options = options
+        self.log = log
+        self.budget = budget
+        self.deadline = perf_counter() + budget - min(SPARE_SECONDS, budget / 10)
+        self.problem = Indexed.of(instance)
+        self.bound = 0
+        self.origin = "start"
+        self.seconds: dict[str, float] = {}
+
+    def run(self) -> PlanResult:
+        """Run the parts in turn until the best plan is proven or the budget is spent."""
+        self._greedy()
+        search = StateSearch(self.problem, self.options, self._cost())
+        self._prove(search.lower_bound, "astar")
+        parts: tuple[tuple[str, Callable[[], None]], ...] = (
+            ("light search", lambda: self._search(search, perf_counter() + LIGHT_SECONDS, may_compile=False)),
+            ("precedence", self._precedence),
+            ("search", lambda: self._search(search, perf_counter() + SEARCH_SHARE * self._left())),
+            ("layered", self._layered),
+            ("search to the end", lambda: self._search(search, self.deadline)),
+        )
+        small = self.problem.blocks <= SMALL_BLOCKS
+        for name, part in (parts[0], parts[2], parts[1], *parts[3:]) if small else parts:
+            if self._settled() or self._left() <= 0:
+                break
+            started = perf_counter()
+            part()
+            self.seconds[name] = perf_counter() - started
+        details: dict[str, Any] = {"expanded": search.expanded, "search": search.ended, "seconds": self.seconds}
+        return self.log.result(lower_bound=self.bound, bound_origin=self.origin, details=details)
+
+    def _cost(self) -> int:
+        assert self.log.cost is not None
+        return self.log.cost
+
+    def _left(self) -> float:
+        return self.deadline - perf_counter()
+
+    def _settled(self) -> bool:
+        return self.bound >= self._cost()
+
+    def _prove(self, bound: int | None, origin: str | None) -> None:
+        if bound is not None and bound > self.bound:
+            self.bound = bound
+            self.origin = origin or "unknown"
+
+    def _greedy(self) -> None:
+        until = perf_counter() + GREEDY_SHARE * self.budget
+        for steps in greedy_steps(self.problem, self.options, until, self.options.seed):
+            self.log.offer(self.problem.actions(steps), "greedy")
+
+    def _search(self, search: StateSearch, until: float, may_compile: bool = True) -> None:
+        """Search over states until `until` [s, clock of `perf_counter`]."""
+        until = min(until, self.deadline)
+        search.raise_bound(self.bound, self._cost())
+        while search.ended is None and perf_counter() < until:
+            steps = search.run(until, may_compile)
+            if steps is not None:
+                self.log.offer(self.problem.actions(steps), "exact")
+            self._prove(search.lower_bound, "astar")
+            if self._settled() or steps is None:
+                return
+
+    def _precedence(self) -> None:
+        from smash.planners.precedence.bound import ORIGIN, precedence_bound
+
+        found = precedence_bound(
+            self.instance,
+            self.options,
+            perf_counter() + (PRECEDENCE_SHARE if self.problem.blocks <= FEW_BLOCKS else 1.0) * self._left(),
+            lambda actions: self.log.offer(actions, "exact"),
+            self.options.threads,
+        )
+        self._prove(found.bound, ORIGIN)
+
+    def _layered(self) -> None:
+        if self.problem.blocks > FEW_BLOCKS:
+            return
+        from smash.planners.layered import LayeredPlanner
+
+        def offer(_: float, __: int, actions: Sequence[Action]) -> None:
+            self.log.offer(actions, "milp")
+
+        result = LayeredPlanner().solve(self.instance, self.options, self._left(), offer)
+        self._prove(result.lower_bound, result.bound_origin)

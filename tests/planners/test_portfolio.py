@@ -1,0 +1,96 @@
+"""The default planner: the optimum of exhaustive search, its parts merged under one budget."""
+
+import dataclasses
+from time import perf_counter
+
+import pytest
+from hypothesis import given, settings
+
+from smash.planners.portfolio import SmashPlanner
+from smash.planners.precedence import PrecedencePlanner
+from smash.planners.protocol import SolveOptions
+from smash.problem import Law, PlanOptions, make_instance
+from smash.problem.generators import generate
+from smash.problem.model import StacksGoal
+from smash.problem.suites import read_suite
+from tests.oracle import optimal_cost
+from tests.strategies import instances, plan_options
+
+
+def with_buffers(instance, count):
+    buffers = instance.buffers[:count]
+    start = {location: instance.start[location] for location in (*instance.stacks, *buffers)}
+    return dataclasses.replace(instance, buffers=buffers, start=start)
+
+
+@settings(max_examples=150, deadline=None)
+@given(instances(max_blocks=4, odd_names=True), plan_options())
+def test_the_default_proves_the_optimum_or_that_there_is_no_plan(instance, options):
+    best = optimal_cost(instance, options)
+    result = SmashPlanner().solve(instance, SolveOptions(options.topple, options.max_topple), 20)
+    assert result.cost == result.lower_bound == best
+    assert result.status == ("infeasible" if best is None else "optimal")
+    if best is not None:
+        assert Law(instance, options).check(result.actions).accepted
+
+
+@settings(max_examples=60, deadline=None)
+@given(instances(max_blocks=4), plan_options())
+def test_the_precedence_bound_never_exceeds_the_optimum_of_the_search(instance, options):
+    settings_ = SolveOptions(options.topple, options.max_topple)
+    bounded = PrecedencePlanner().solve(instance, settings_, 10)
+    solved = SmashPlanner().solve(instance, settings_, 10)
+    if solved.cost is not None:
+        assert bounded.lower_bound <= solved.cost
+
+
+@pytest.mark.parametrize("topple", [True, False])
+@pytest.mark.parametrize("suite", ["multi-4", "multi-6", "single-6", "single-9"])
+def test_benchmark_instances_are_proven_with_every_number_of_buffers(suite, topple):
+    for number, instance in enumerate(read_suite(suite)):
+        result = SmashPlanner().solve(with_buffers(instance, number % 13), SolveOptions(topple), 30)
+        assert result.status == "optimal"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("topple", [True, False])
+@pytest.mark.parametrize("buffers", range(13))
+def test_nine_blocks_are_proven_with_every_number_of_buffers(buffers, topple):
+    for instance in read_suite("multi-9"):
+        assert SmashPlanner().solve(with_buffers(instance, buffers), SolveOptions(topple), 30).status == "optimal"
+
+
+def test_incumbents_improve_and_are_reported_at_once():
+    seen = []
+    instance = next(generate("multi", 9, 1, 1, 5))
+    result = SmashPlanner().solve(
+        instance, SolveOptions(topple=False), 10, lambda seconds, cost, plan: seen.append((seconds, cost, len(plan)))
+    )
+    assert [entry[:2] for entry in seen] == [tuple(entry[:2]) for entry in result.incumbents]
+    assert all(cost == length for _, cost, length in seen)
+    assert [cost for _, cost, _ in seen] == sorted((cost for _, cost, _ in seen), reverse=True)
+
+
+@pytest.mark.parametrize("budget", [0.05, 0.5])
+@pytest.mark.parametrize("blocks", [20, 150])
+def test_the_budget_is_kept_at_every_size(blocks, budget):
+    instance = next(generate("multi", blocks, 0, 1, 0))
+    started = perf_counter()
+    result = SmashPlanner().solve(instance, SolveOptions(topple=False), budget)
+    assert perf_counter() - started < budget + 0.5
+    assert result.cost is not None
+    assert result.lower_bound is not None
+
+
+def test_an_empty_problem_needs_no_action():
+    instance = make_instance(name="none", blocks=[], stacks=["s1"], start={}, goal=StacksGoal({}))
+    result = SmashPlanner().solve(instance, SolveOptions(), 1)
+    assert (result.status, result.cost) == ("optimal", 0)
+
+
+def test_two_locations_without_topple_are_refused_with_the_proof():
+    goal = StacksGoal({"s1": ("b", "a")})
+    instance = make_instance(name="swap", blocks=["a", "b"], stacks=["s1", "s2"], start={"s1": ["a", "b"]}, goal=goal)
+    result = SmashPlanner().solve(instance, SolveOptions(topple=False), 1)
+    assert (result.status, result.bound_origin) == ("infeasible", "feasibility")
+    assert SmashPlanner().solve(instance, SolveOptions(), 1).cost == optimal_cost(instance, PlanOptions())
