@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
-.PHONY: help test test-slow lint suites
+.PHONY: help test test-slow lint suites ablation ablation-full
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -29,3 +29,12 @@ lint: $(STAMP) ## ruff and mypy, both strict
 
 suites: $(STAMP) ## make the committed instance sets again, byte for byte
 	$(BIN)/python -m smash.problem.make_suites
+
+ablation: $(STAMP) ## the paper's budget x buffer heatmaps on a stated subset (at most 20 minutes on 2 cores)
+	$(BIN)/python -m smash sweep experiments/ablation.toml --out runs/ablation
+	$(BIN)/python -m analysis.ablation runs/ablation
+
+ablation-full: $(STAMP) ## the paper's whole grid: 9 blocks, 20 instances, buffers 0 to 12, budgets to 30 s (hours)
+	$(BIN)/python -m smash sweep experiments/ablation-full.toml --out runs/ablation-full --dry-run
+	$(BIN)/python -m smash sweep experiments/ablation-full.toml --out runs/ablation-full
+	$(BIN)/python -m analysis.ablation runs/ablation-full
