@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
 from baselines.encodings import BY_DOMAIN, Encoding
-from baselines.facts import Fact
-from baselines.names import numbered
-from baselines.task import HEADER
+from baselines.facts import Fact, facts_of
+from baselines.names import Names, numbered
+from baselines.task import HEADER, PddlTask
 from smash.problem.errors import MalformedFile
 from smash.problem.files import make_instance
 from smash.problem.model import Goal, Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal
@@ -21,13 +21,23 @@ _TOKEN = re.compile(r"[()]|[^\s()]+")
 
 @dataclass(frozen=True, slots=True)
 class ReadProblem:
-    """An instance read from PDDL, the plan options that its domain says, and how its objects are called in PDDL."""
+    """An instance read from PDDL, the plan options that its domain says, and how its objects are called in PDDL.
+
+    `counts` are the objects that count, from 0 up.
+    """
 
     instance: Instance
     options: PlanOptions
     encoding: Encoding
-    block_of: Mapping[str, str]
-    location_of: Mapping[str, str]
+    names: Names
+    counts: tuple[str, ...]
+
+    @property
+    def task(self) -> PddlTask:
+        """The compiled task with the problem's own object names, to say plans in them."""
+        facts = facts_of(self.instance, self.options, self.encoding, self.names)
+        facts.objects["count"] = self.counts
+        return PddlTask(self.instance, self.options, self.encoding, self.names, facts)
 
 
 @dataclass(slots=True)
@@ -125,6 +135,10 @@ def _facts(items: Iterable[Any], where: str) -> Iterator[Fact]:
         yield tuple(item)
 
 
+def _inverse(names: Mapping[str, str]) -> dict[str, str]:
+    return {name: short for short, name in names.items()}
+
+
 class _Interpreter:
     """Reads piles, counts and goal from the facts of one problem."""
 
@@ -144,7 +158,9 @@ class _Interpreter:
             options = self._options()
         except (KeyError, IndexError) as error:
             self.refuse(f"a fact names what is no object of its type: {error}")
-        return ReadProblem(instance, options, self.raw.encoding, self.block_of, self.location_of)
+        names = Names(_inverse(self.block_of), _inverse(self.location_of))
+        counts = tuple(sorted(self.raw.objects.get("count", []), key=self._index))
+        return ReadProblem(instance, options, self.raw.encoding, names, counts)
 
     def _instance(self) -> Instance:
         raw = self.raw
