@@ -17,7 +17,7 @@ from baselines.process import MEMORY_LIMIT
 from baselines.steps import Step, actions_of
 from baselines.task import PddlTask, compile_instance
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
-from smash.problem.errors import IllegalAction, PlannerCrashed, Unsupported
+from smash.problem.errors import IllegalAction, PlannerCrashed, PlannerOutOfMemory, Unsupported
 from smash.problem.model import Instance, State
 from smash.problem.rules import Law
 
@@ -102,7 +102,9 @@ class EnginePlanner(BasePlanner):
         run.details["outcome"] = outcome.text
         if run.log.refusals:
             run.details["refused"] = list(run.log.refusals)
-        if run.log.best is None and outcome.kind in ("memory", "crashed"):
+        if run.log.best is None and outcome.kind == "memory":
+            raise PlannerOutOfMemory(f"{self.name}: {outcome.text} ({run.memory >> 20} MiB)")
+        if run.log.best is None and outcome.kind == "crashed":
             raise PlannerCrashed(f"{self.name}: {outcome.text}{_last_words(run)}")
         if run.log.best is None and outcome.kind == "unsupported":
             raise Unsupported(f"{self.name}: {outcome.text}")

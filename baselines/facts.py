@@ -42,6 +42,8 @@ def facts_of(instance: Instance, options: PlanOptions, encoding: Encoding, names
     cap = cap_of(instance, options) if encoding.capped else None
     counts = count_names(max(len(instance.buffers), 0 if cap is None else cap - 1))
     start: list[Fact] = [("hand-empty",)]
+    if encoding in (CHAIN, CHAIN_CAPPED):
+        start.append(("idle",))
     start += _piles(instance, encoding, names)
     start += [("on-table", names.blocks[block]) for block in instance.table]
     free = sum(not instance.start.get(buffer) for buffer in instance.buffers)
@@ -54,7 +56,8 @@ def facts_of(instance: Instance, options: PlanOptions, encoding: Encoding, names
         "location": tuple(names.locations.values()),
         "count": tuple(counts),
     }
-    return Facts(objects, tuple(start), (*_goal(instance, names), ("hand-empty",)))
+    ended: tuple[Fact, ...] = (("hand-empty",), ("idle",)) if ("idle",) in start else (("hand-empty",),)
+    return Facts(objects, tuple(start), (*_goal(instance, names), *ended))
 
 
 def _piles(instance: Instance, encoding: Encoding, names: Names) -> Iterator[Fact]:

@@ -72,6 +72,7 @@ class FdOptIpdb(DownwardPlanner):
     encoding = "chain"
     configuration = IPDB
     anytime = False
+    budget_dependent = True  # the search for patterns gets a share of it
     proves = True
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
-from baselines.encodings import BY_DOMAIN, Encoding
+from baselines.encodings import BY_DOMAIN, CHAIN, CHAIN_CAPPED, Encoding
 from baselines.facts import Fact, facts_of
 from baselines.names import Names, numbered
 from baselines.task import HEADER, PddlTask
@@ -164,7 +164,8 @@ class _Interpreter:
 
     def _instance(self) -> Instance:
         raw = self.raw
-        if ("hand-empty",) not in raw.start:
+        chain = raw.encoding in (CHAIN, CHAIN_CAPPED)
+        if ("hand-empty",) not in raw.start or (chain and ("idle",) not in raw.start):
             self.refuse("the hand holds a block, or a topple is under way, at the start")
         start = {self.location_of[f[2]]: self._pile(f[1]) for f in raw.start if f[0] == "base"}
         on_buffers = [fact[1] for fact in raw.start if fact[0] == "on-buffer"]
@@ -226,9 +227,9 @@ class _Interpreter:
 
     def _goal(self) -> Goal:
         """Read the goal: `on` where no block has a location, `stacks` where all blocks have one, else `positions`."""
-        facts = [fact for fact in self.raw.goal if fact[0] != "hand-empty"]
+        facts = [fact for fact in self.raw.goal if fact[0] not in ("hand-empty", "idle")]
         if any(fact[0] not in ("on", "base", "bottom") for fact in facts):
-            self.refuse("the goal may say (on …), (base …), (bottom …) and (hand-empty) only")
+            self.refuse("the goal may say (on …), (base …), (bottom …), (hand-empty) and (idle) only")
         upon = {fact[2]: fact[1] for fact in facts if fact[0] == "on"}
         piles: dict[str, list[str]] = {}
         for base in (fact for fact in facts if fact[0] == "base"):

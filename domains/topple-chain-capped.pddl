@@ -19,7 +19,8 @@
     (empty ?l - location)             ; nothing stands at stack location ?l
     (free-buffers ?k - count)         ; ?k buffers are empty
     (next ?k ?more - count)           ; ?more = ?k + 1
-    (hand-empty)                      ; and no topple is under way
+    (hand-empty)
+    (idle)                            ; no topple is under way
     (holding ?b - block)
     (edge ?b - block)                 ; a topple is under way and has come down to ?b
     (cap ?k - count)                  ; ?k blocks may fall after the first one of a topple
@@ -31,27 +32,27 @@
 
   (:action pick
     :parameters (?b ?under - block ?r - region)
-    :precondition (and (hand-empty) (top ?b ?r) (on ?b ?under))
+    :precondition (and (hand-empty) (idle) (top ?b ?r) (on ?b ?under))
     :effect (and (holding ?b) (not (hand-empty)) (not (top ?b ?r)) (not (on ?b ?under)) (top ?under ?r)
                  (increase (total-cost) 1)))
 
   (:action pick-base
     :parameters (?b - block ?l - location)
-    :precondition (and (hand-empty) (top ?b stacks) (base ?b ?l))
+    :precondition (and (hand-empty) (idle) (top ?b stacks) (base ?b ?l))
     :effect (and (holding ?b) (not (hand-empty)) (not (top ?b stacks)) (not (base ?b ?l)) (not (bottom ?b))
                  (empty ?l)
                  (increase (total-cost) 1)))
 
   (:action pick-from-buffer
     :parameters (?b - block ?free ?freed - count)
-    :precondition (and (hand-empty) (top ?b buffers) (on-buffer ?b) (free-buffers ?free) (next ?free ?freed))
+    :precondition (and (hand-empty) (idle) (top ?b buffers) (on-buffer ?b) (free-buffers ?free) (next ?free ?freed))
     :effect (and (holding ?b) (not (hand-empty)) (not (top ?b buffers)) (not (on-buffer ?b)) (not (bottom ?b))
                  (not (free-buffers ?free)) (free-buffers ?freed)
                  (increase (total-cost) 1)))
 
   (:action pick-from-table
     :parameters (?b - block)
-    :precondition (and (hand-empty) (on-table ?b))
+    :precondition (and (hand-empty) (idle) (on-table ?b))
     :effect (and (holding ?b) (not (hand-empty)) (not (on-table ?b))
                  (increase (total-cost) 1)))
 
@@ -80,13 +81,13 @@
 
   (:action topple-begin
     :parameters (?b ?under - block ?k - count)
-    :precondition (and (hand-empty) (top ?b stacks) (on ?b ?under) (cap ?k))
-    :effect (and (edge ?under) (may-fall ?k) (not (hand-empty)) (not (top ?b stacks)) (not (on ?b ?under)) (on-table ?b)
+    :precondition (and (hand-empty) (idle) (top ?b stacks) (on ?b ?under) (cap ?k))
+    :effect (and (edge ?under) (may-fall ?k) (not (idle)) (not (top ?b stacks)) (not (on ?b ?under)) (on-table ?b)
                  (increase (total-cost) 1)))
 
   (:action topple-begin-base          ; a stack of one block: nothing is left to fall, the topple is over
     :parameters (?b - block ?l - location)
-    :precondition (and (hand-empty) (top ?b stacks) (base ?b ?l))
+    :precondition (and (hand-empty) (idle) (top ?b stacks) (base ?b ?l))
     :effect (and (not (top ?b stacks)) (not (base ?b ?l)) (not (bottom ?b)) (on-table ?b) (empty ?l)
                  (increase (total-cost) 1)))
 
@@ -99,13 +100,13 @@
   (:action topple-drop-base           ; the lowest block falls: the location is empty, the topple is over
     :parameters (?b - block ?l - location ?k ?left - count)
     :precondition (and (edge ?b) (base ?b ?l) (may-fall ?k) (next ?left ?k))
-    :effect (and (hand-empty) (not (edge ?b)) (not (may-fall ?k)) (not (base ?b ?l)) (not (bottom ?b)) (on-table ?b)
+    :effect (and (idle) (not (edge ?b)) (not (may-fall ?k)) (not (base ?b ?l)) (not (bottom ?b)) (on-table ?b)
                  (empty ?l)
                  (increase (total-cost) 0)))
 
   (:action topple-end                 ; ?b stays: it is the new top
     :parameters (?b - block ?k - count)
     :precondition (and (edge ?b) (may-fall ?k))
-    :effect (and (hand-empty) (not (edge ?b)) (not (may-fall ?k)) (top ?b stacks)
+    :effect (and (idle) (not (edge ?b)) (not (may-fall ?k)) (top ?b stacks)
                  (increase (total-cost) 0)))
 )

@@ -1,6 +1,13 @@
 """The law and its files: instances, states, actions, goals, the checker, generators, blocks-world import."""
 
-from smash.problem.errors import IllegalAction, MalformedFile, PlannerCrashed, SmashError, Unsupported
+from smash.problem.errors import (
+    IllegalAction,
+    MalformedFile,
+    PlannerCrashed,
+    PlannerOutOfMemory,
+    SmashError,
+    Unsupported,
+)
 from smash.problem.files import make_instance, read_instance, read_plan, write_instance, write_plan
 from smash.problem.model import (
     TABLE,
@@ -34,6 +41,7 @@ __all__ = [
     "Plan",
     "PlanOptions",
     "PlannerCrashed",
+    "PlannerOutOfMemory",
     "PositionsGoal",
     "SmashError",
     "StacksGoal",

@@ -34,3 +34,7 @@ class PlannerCrashed(SmashError):
     """A planner ended abnormally or hit its memory limit."""
 
     exit_code = 7
+
+
+class PlannerOutOfMemory(PlannerCrashed, MemoryError):
+    """A planner hit its memory limit without a plan; a `MemoryError` too, so that runners tell it from a crash."""

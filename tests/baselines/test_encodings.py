@@ -98,15 +98,15 @@ def test_a_problem_without_the_line_of_names_reads_back_with_its_object_names():
         ("(define (problem p) (:domain other))", "none of ours"),
         ("(define (problem p)) )", "never opened"),
         ("(define (problem p) (:domain smash-topple-chain) (:init) (:goal (and)))", "hand"),
-        ("(define (problem p) (:domain smash-topple-chain) (:init (hand-empty)) (:goal (and)))", "free-buffers"),
+        ("(define (problem p) (:domain smash-topple-chain) (:init (hand-empty) (idle)) (:goal (and)))", "free-buffers"),
         (
             "(define (problem p) (:domain smash-topple-chain) (:objects l - location n - count)"
-            "(:init (hand-empty) (free-buffers n) (base x l)) (:goal (and)))",
+            "(:init (hand-empty) (idle) (free-buffers n) (base x l)) (:goal (and)))",
             "no object",
         ),
         (
             "(define (problem p) (:domain smash-topple-chain) (:objects l - location n - count)"
-            "(:init (hand-empty) (free-buffers n)) (:goal (and (holding b))))",
+            "(:init (hand-empty) (idle) (free-buffers n)) (:goal (and (holding b))))",
             "goal",
         ),
     ],

@@ -13,7 +13,7 @@ from baselines import planners
 from baselines.planners import Aries, Enhsp, FdLama, FdLamaChain, FdLamaFirst, FdOpt, FdOptIpdb, SymkOpt
 from smash.planners.protocol import SolveOptions
 from smash.planners.registry import get_planner
-from smash.problem import Law, PlannerCrashed, PlanOptions, make_instance, read_instance
+from smash.problem import Law, PlannerOutOfMemory, PlanOptions, make_instance, read_instance
 from smash.problem.model import OnGoal, PositionsGoal, StacksGoal
 from smash.problem.suites import suite_files
 from tests.oracle import optimal_cost
@@ -120,7 +120,7 @@ def test_a_lower_bound_stands_when_the_budget_ends_first():
 
 
 def test_a_memory_limit_is_a_crash_with_a_name():
-    with pytest.raises(PlannerCrashed, match="memory"):
+    with pytest.raises(PlannerOutOfMemory, match="memory"):
         solve(FdOpt(memory=30 << 20), read_instance(suite_files("multi-9")[0]))
 
 
@@ -134,7 +134,9 @@ FdLama().solve(read_instance(sys.argv[1]), SolveOptions(), 60, lambda *_: print(
 """
 
 
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize(
+    "number", [signal.SIGKILL, *(pytest.param(s, marks=pytest.mark.slow) for s in (signal.SIGTERM, signal.SIGINT))]
+)
 def test_killing_the_caller_leaves_no_engine(number):
     caller = subprocess.Popen(
         [sys.executable, "-c", SLEEPER, str(suite_files("multi-9")[0])],
@@ -175,14 +177,26 @@ def test_aries_and_its_server_die_with_the_caller():
     assert not alive
 
 
-@pytest.mark.parametrize("planner", [Enhsp, Aries])
-def test_engines_of_other_worlds_solve_small_problems(planner):
+class Enough(Exception):
+    """Raised out of a planner's report of its first plan."""
+
+
+@pytest.mark.parametrize("planner", [FdLama, Enhsp, Aries])
+def test_the_first_plan_comes_before_the_end_and_who_has_enough_can_leave(planner):
     if planner().missing():
         pytest.skip(str(planner().missing()))
-    result = solve(planner(), figure_1(), budget=4.0)
-    assert result.status == "feasible"
-    assert not result.details.get("refused")
-    assert result.cost >= 3
+    seen = []
+
+    def leave(seconds, cost, actions):
+        seen.append(cost)
+        raise Enough
+
+    before = set(psutil.Process().children(recursive=True))
+    with pytest.raises(Enough):
+        solve(planner(), figure_1(), budget=60.0, on_incumbent=leave)
+    assert len(seen) == 1
+    assert seen[0] >= 3
+    assert set(psutil.Process().children(recursive=True)) <= before
 
 
 def test_the_registry_knows_the_baselines():

@@ -15,7 +15,7 @@ pytest.importorskip("unified_planning")
 from baselines.up_problem import problem_of_task, up_accepts, up_plan
 
 
-@settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=5, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(instances(max_blocks=4), plan_options(), st.sampled_from(TOPPLE_ENCODINGS), st.integers(0, 99))
 def test_the_library_simulates_what_the_law_does(instance, options, wanted, seed):
     """Along a random legal walk the library accepts each step, and sees the goal exactly when the law does."""
