@@ -7,13 +7,14 @@ height-indexed nodes shrinks to three nodes a block: its *start* place, *off* th
 region after a topple), and its *goal* place. The edges between them are the gadget's: a cross-stack edge from
 start to goal, cross-stack edges to and from a buffer, the topple edges into the table region, a table pick. A
 stack takes part in one action a layer; a chain empties from its top and fills from its bottom. The buffers are one
-node of capacity B, or of unbounded capacity; the latter is a relaxation: in any plan, whatever happens between the
-first removal and the last placement of a block costs at least what the model asks for it.
+node of unbounded capacity, which is a relaxation: in any plan, whatever happens between the first removal and the
+last placement of a block costs at least what the model asks for it. `resting` adds the locations that there are.
 """
 
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -100,27 +101,20 @@ class LayeredModel:
     topples: dict[str, Ints]
 
 
-def build_layered(
-    problem: LayeredProblem,
-    options: PlanOptions,
-    horizon: int,
-    *,
-    buffers: int | None = None,
-    occupied: dict[str, int] | None = None,
-) -> LayeredModel:
-    """Build the layered model.
+def build_layered(problem: LayeredProblem, options: PlanOptions, horizon: int) -> LayeredModel:
+    """Build the layered model with unbounded buffers.
 
     Args:
         problem: the moving blocks.
         options: topple or not, and its cap.
         horizon: number of layers.
-        buffers: capacity of the one node that stands for the buffers; None: unbounded.
-        occupied: number of blocks on each buffer that is not empty at the start (they use the capacity first).
     """
-    return _Builder(problem, options, horizon).build(buffers, occupied or {})
+    return EventsBuilder(problem, options, horizon).build()
 
 
-class _Builder:
+class EventsBuilder:
+    """Builds the rows of `build_layered`, one method a constraint."""
+
     def __init__(self, problem: LayeredProblem, options: PlanOptions, horizon: int) -> None:
         self.problem = problem
         self.options = options
@@ -132,7 +126,8 @@ class _Builder:
         self.source = {block: at for at, pile in problem.piles for block in pile}
         self.target = {block: at for at, chain in problem.chains for block in chain}
 
-    def build(self, buffers: int | None, occupied: dict[str, int]) -> LayeredModel:
+    def build(self) -> LayeredModel:
+        """Add everything and return the model."""
         self._add_edges()
         self._add_topples()
         self._leave_and_arrive_once()
@@ -146,8 +141,6 @@ class _Builder:
         self._clear_before_filling()
         self._one_action_a_stack()
         self._detours()
-        if buffers is not None:
-            self._capacity(buffers, occupied)
         model = self.milp.build(self._name)
         return LayeredModel(self.problem, self.horizon, model, self.edges, self.topples)
 
@@ -257,13 +250,17 @@ class _Builder:
         emptied = dict(self.problem.piles)
         for location in sorted({*filled, *emptied}):
             for layer in range(self.horizon):
-                now = slice(layer, layer + 1)
-                columns = [c for b in emptied.get(location, ()) for c in self._columns(("direct", "aside"), b, now)]
-                for block in filled.get(location, ()):
-                    columns += self._columns(("direct", "from_aside", "from_table"), block, now)
-                if location in self.topples:
-                    columns += [int(column) for column in self.topples[location][:, layer]]
+                columns = self._actions_on(location, filled.get(location, ()), emptied.get(location, ()), layer)
                 self.milp.add_row(columns, [1] * len(columns), upper=1)
+
+    def _actions_on(self, location: str, filled: Sequence[int], emptied: Sequence[int], layer: int) -> list[int]:
+        """Columns of what takes start blocks from `location`, topples it, or adds to its goal chain in a layer."""
+        now = slice(layer, layer + 1)
+        columns = [c for block in emptied for c in self._columns(("direct", "aside"), block, now)]
+        columns += [c for b in filled for c in self._columns(("direct", "from_aside", "from_table"), b, now)]
+        if location in self.topples:
+            columns += [int(column) for column in self.topples[location][:, layer]]
+        return columns
 
     def _detours(self) -> None:
         """Valid inequalities: of blocks that wait for each other in a circle, not all move directly.
@@ -298,25 +295,6 @@ class _Builder:
         columns = [c for block in blocks for c in self._columns(("direct",), block, slice(None))]
         self.milp.add_row(columns, [1] * len(columns), upper=len(blocks) - 1)
 
-    def _capacity(self, buffers: int, occupied: dict[str, int]) -> None:
-        """A buffer holds one block that is put aside; one with start blocks is free once its lowest has left."""
-        standing = dict(self.problem.piles)
-        staying = [at for at, kept in self.problem.demands.keep.items() if at in occupied and kept]
-        lowest = [standing[at][0] for at in occupied if at in standing and at not in staying]
-        for layer in range(self.horizon):
-            columns: list[int] = []
-            values: list[float] = []
-            for block in range(len(self.problem.blocks)):
-                went = self._columns(("aside",), block, slice(0, layer + 1))
-                came = self._columns(("from_aside",), block, slice(0, layer))
-                columns += went + came
-                values += [1.0] * len(went) + [-1.0] * len(came)
-            for block in lowest:
-                gone = self._left(block, layer - 1) if layer else []
-                columns += gone
-                values += [-1.0] * len(gone)
-            self.milp.add_row(columns, values, upper=buffers - len(staying) - len(lowest))
-
     def _name(self, column: int) -> str:
         for kind, columns in self.edges.items():
             found = np.argwhere(columns == column)
@@ -333,7 +311,10 @@ class _Builder:
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """One edge that a solution takes: `layer`, the kind of the edge (or `topple`), its block or its cut."""
+    """One edge that a solution takes: `layer`, the kind of the edge (or `topple`), its block or its cut.
+
+    `location` is that of a topple, or where a block is put aside if the model says so.
+    """
 
     layer: int
     kind: str

@@ -72,6 +72,8 @@ class Packing:
 
     def _target(self, index: int, event: Event, state: State, resting: dict[str, list[int]], source: str) -> str | None:
         if event.kind == "aside":
+            if event.location is not None:
+                return event.location
             until = self.returns.get(event.subject, NEVER)
             return self._resting_place(index, until, state, resting, source)
         chain = self.chains[self.chain_of[event.subject]]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from math import ceil
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -12,8 +13,8 @@ from smash.problem.feasibility import why_infeasible
 from smash.problem.model import Action, Instance
 
 if TYPE_CHECKING:
-    from smash.planners.layered.events import LayeredModel, LayeredProblem
-    from smash.planners.milp import Floats, Milp
+    from smash.planners.layered.events import LayeredProblem
+    from smash.planners.milp import Floats, Milp, MilpResult, MilpStatus
 
 SPARE_SECONDS = 0.05
 """Kept back from the budget for the solver to end and the last plan to be checked."""
@@ -54,13 +55,11 @@ class LayeredPlanner(BasePlanner):
         return _Solve(instance, options, budget, log).run()
 
     def build_model(self, instance: Instance, options: SolveOptions) -> Milp:
-        """Return the MILP at the sound horizon (or `options.horizon`) with the buffers that there are."""
+        """Return the MILP of the relaxation at the sound horizon, or at `options.horizon`."""
         from smash.planners.layered.events import LayeredProblem, build_layered
 
         problem = LayeredProblem.of(instance, options)
-        horizon = options.horizon or problem.sound_horizon
-        occupied = {at: len(instance.start[at]) for at in instance.buffers if instance.start[at]}
-        return build_layered(problem, options, horizon, buffers=len(instance.buffers), occupied=occupied).milp
+        return build_layered(problem, options, options.horizon or problem.sound_horizon).milp
 
 
 class _Solve:
@@ -75,8 +74,8 @@ class _Solve:
         self.deadline = perf_counter() + budget - min(SPARE_SECONDS, budget / 10) - log.elapsed
         self.problem: LayeredProblem = LayeredProblem.of(instance, options)
         self.bound = 0
+        self.bound_origin = BOUND_ORIGIN
         self.details: dict[str, Any] = {"stages": []}
-        self._unpacked = 0
 
     def run(self) -> PlanResult:
         if self.problem.demands.met:
@@ -88,10 +87,11 @@ class _Solve:
         chosen = self.options.horizon
         horizons = [self.problem.short_horizon(), sound] if chosen is None else [chosen]
         for horizon in sorted(set(horizons)):
-            self._stage(horizon, proves=horizon >= sound, limited=False)
-        if self._unpacked and not self._done():
-            self._stage(max(horizons), proves=False, limited=True)
-        return self.log.result(lower_bound=self.bound, bound_origin=BOUND_ORIGIN, details=self.details)
+            self._relaxation_stage(horizon, proves=horizon >= sound)
+        if all(location is not None for location, _ in self.problem.chains):
+            self._resting_stage(max(horizons))
+        self._positions(chosen)
+        return self.log.result(lower_bound=self.bound, bound_origin=self.bound_origin, details=self.details)
 
     def _done(self) -> bool:
         return (self.log.cost is not None and self.log.cost <= self.bound) or perf_counter() >= self.deadline
@@ -105,55 +105,96 @@ class _Solve:
         if found.actions is not None:
             self.log.offer(found.actions, name)
 
-    def _stage(self, horizon: int, *, proves: bool, limited: bool) -> None:
-        """Build and solve one model; `limited`: with as many buffers as there are."""
-        from smash.planners import highs
-        from smash.planners.layered.events import build_layered
+    def _relaxation_stage(self, horizon: int, *, proves: bool) -> None:
+        """Unbounded buffers: a bound where the horizon is sound, and plans where the blocks find places to rest."""
+        from smash.planners.layered.events import build_layered, read_events
+        from smash.planners.layered.packing import Packing
 
         if self._done():
             return
-        occupied = {at: len(self.instance.start[at]) for at in self.instance.buffers if self.instance.start[at]}
-        model = build_layered(
-            self.problem,
-            self.options,
-            horizon,
-            buffers=len(self.instance.buffers) if limited else None,
-            occupied=occupied,
-        )
+        model = build_layered(self.problem, self.options, horizon)
 
-        def found(_seconds: float, _objective: float, vector: Floats) -> None:
-            self._offer(model, vector)
+        def decode(vector: Floats) -> Sequence[Action] | None:
+            return Packing(self.instance, self.problem, read_events(model, vector)).actions()
 
-        result = highs.solve(
-            model.milp,
-            time_limit=self.deadline - perf_counter(),
-            threads=self.options.threads,
-            seed=self.options.seed,
-            on_solution=found,
-            should_stop=self._done,
-            cutoff=None if self.log.cost is None or not limited else self.log.cost - 0.5,
-        )
-        if result.vector is not None:
-            self._offer(model, result.vector)
-        stage: dict[str, Any] = {
-            "horizon": horizon,
-            "buffers": "limited" if limited else "unbounded",
-            **model.milp.size(),
-        }
-        stage |= {"status": result.status, "objective": result.objective, "seconds": round(result.seconds, 4)}
-        self.details["stages"].append(stage)
+        result = self._run(horizon, "unbounded", model.milp, decode)
         if proves:
             self.bound = max(self.bound, ceil(result.bound - 1e-6))
 
-    def _offer(self, model: LayeredModel, vector: Floats) -> None:
-        actions = self._decode(model, vector)
-        if actions is None:
-            self._unpacked += 1
-        else:
-            self.log.offer(actions, "milp")
-
-    def _decode(self, model: LayeredModel, vector: Floats) -> Sequence[Action] | None:
-        from smash.planners.layered.events import read_events
+    def _resting_stage(self, horizon: int) -> None:
+        """The locations that there are, each block moved at most twice."""
         from smash.planners.layered.packing import Packing
+        from smash.planners.layered.resting import build_resting, read_resting
 
-        return Packing(self.instance, self.problem, read_events(model, vector)).actions()
+        if self._done():
+            return
+        most = None if self.log.cost is None else self.log.cost - 1
+        model = build_resting(self.instance, self.problem, self.options, horizon, self.bound, most)
+
+        def decode(vector: Floats) -> Sequence[Action] | None:
+            events = read_resting(model, self.instance.locations, vector)
+            return Packing(self.instance, self.problem, events).actions()
+
+        self._run(horizon, "resting places", model.layered.milp, decode)
+
+    def _run(
+        self, horizon: int, buffers: str, model: Milp, decode: Callable[[Floats], Sequence[Action] | None]
+    ) -> MilpResult:
+        """Solve a stage's model until its end, the deadline, or a plan that meets the bound."""
+        from smash.planners import highs
+
+        def found(vector: Floats) -> None:
+            actions = decode(vector)
+            if actions is not None:
+                self.log.offer(actions, "milp")
+
+        result = highs.solve(
+            model,
+            time_limit=self.deadline - perf_counter(),
+            threads=self.options.threads,
+            seed=self.options.seed,
+            on_solution=lambda _seconds, _objective, vector: found(vector),
+            should_stop=self._done,
+        )
+        if result.vector is not None:
+            found(result.vector)
+        stage: dict[str, Any] = {"horizon": horizon, "buffers": buffers, **model.size()}
+        stage |= {"status": result.status, "objective": result.objective, "seconds": round(result.seconds, 4)}
+        self.details["stages"].append(stage)
+        return result
+
+    def _positions(self, chosen: int | None) -> None:
+        """Solve the model with every resting place, at growing horizons, until the horizon holds every cheaper plan."""
+        horizon = chosen or self.problem.short_horizon()
+        while not self._done():
+            enough = self._enough_layers()
+            if enough is not None and chosen is None:
+                horizon = min(horizon, enough)
+            status = self._positions_stage(horizon)
+            if status not in ("optimal", "infeasible") or chosen is not None:
+                return
+            if enough is not None and horizon >= enough and self.log.cost is not None:
+                self.bound = self.log.cost  # no cheaper plan has more layers, and none was left at this horizon
+                self.bound_origin = f"layered positions at a horizon of {horizon}"
+                return
+            horizon += max(2, horizon // 4)
+
+    def _enough_layers(self) -> int | None:
+        """Return a number of layers that holds every plan cheaper than the best one, or None without one.
+
+        Such a plan has at least as many transfers as there are blocks to place; the rest may be topples.
+        """
+        if self.log.cost is None:
+            return None
+        cheaper = self.log.cost - 1
+        if not self.options.topple:
+            return cheaper // 2
+        return cheaper - len(self.problem.placed)
+
+    def _positions_stage(self, horizon: int) -> MilpStatus:
+        from smash.planners.layered.positions import build_positions, read_positions
+
+        demands, best = self.problem.demands, self.log.cost
+        model = build_positions(self.instance, demands, self.options, horizon, self.bound, best)
+        decode = partial(read_positions, self.instance, model)
+        return self._run(horizon, "positions", model.milp, decode).status
