@@ -25,6 +25,8 @@ from smash.problem.model import Instance, PlanOptions
 
 TRANSFER_COST = 2
 TOPPLE_COST = 1
+MOST_CIRCLES = 60
+"""Up to so many blocks that may move directly, the circles of two and three of them are looked for."""
 KINDS = ("direct", "aside", "fall", "from_aside", "from_table")
 """The edges of a block: start to goal, start to buffer, start to table (free), buffer to goal, table to goal."""
 
@@ -125,10 +127,14 @@ class EventsBuilder:
         self.topples: dict[str, Ints] = {}
         self.source = {block: at for at, pile in problem.piles for block in pile}
         self.target = {block: at for at, chain in problem.chains for block in chain}
+        self.rank = {
+            b: (number, rank) for number, (_, chain) in enumerate(problem.chains) for rank, b in enumerate(chain)
+        }
 
     def build(self) -> LayeredModel:
         """Add everything and return the model."""
         self._add_edges()
+        self._add_states()
         self._add_topples()
         self._leave_and_arrive_once()
         self._return_after_leaving()
@@ -163,6 +169,29 @@ class EventsBuilder:
     def _add_edge(self, kind: str, block: int, cost: float) -> None:
         self.edges[kind][block] = self.milp.add_columns(self.horizon, cost=cost)
 
+    def _add_states(self) -> None:
+        """Columns for what a block has done by the end of a layer: each the last one plus what happens in the layer."""
+        leaving = [block for block in range(len(self.problem.blocks)) if block not in self.problem.lying]
+        self.left = self._sums(leaving, {"direct": 1, "aside": 1, "fall": 1})
+        self.arrived = self._sums(sorted(self.problem.placed), {"direct": 1, "from_aside": 1, "from_table": 1})
+        self.rests = self._sums(leaving, {"aside": 1, "from_aside": -1})
+        self.lies = self._sums(leaving, {"fall": 1, "from_table": -1})
+
+    def _sums(self, blocks: list[int], signs: dict[str, int]) -> Ints:
+        """Return columns (blocks, layers): the signed sum of edges up to a layer, between 0 and 1."""
+        sums = np.full((len(self.problem.blocks), self.horizon), -1, dtype=np.int64)
+        for block in blocks:
+            sums[block] = self.milp.add_columns(self.horizon, integral=False)
+            for layer in range(self.horizon):
+                before = [sums[block, layer - 1]] if layer else []
+                parts = [
+                    (self.edges[k][block, layer], -v) for k, v in signs.items() if self.edges[k][block, layer] >= 0
+                ]
+                columns = [sums[block, layer], *before, *(column for column, _ in parts)]
+                values = [1, *[-1] * len(before), *(value for _, value in parts)]
+                self.milp.add_row(columns, values, lower=0, upper=0)
+        return sums
+
     def _add_topples(self) -> None:
         """Without a cap the whole leaving part falls: what lies on the table is as near as what lies on a stack."""
         for location, pile in self.problem.piles:
@@ -191,12 +220,12 @@ class EventsBuilder:
         return [int(column) for column in found if column >= 0]
 
     def _left(self, block: int, layer: int) -> list[int]:
-        """Columns whose sum is 1 where `block` has left its start place by the end of `layer`."""
-        return self._columns(("direct", "aside", "fall"), block, slice(0, layer + 1))
+        """The column that is 1 where `block` has left its start place by the end of `layer`."""
+        return [int(self.left[block, layer])]
 
     def _arrived(self, block: int, layer: int) -> list[int]:
-        """Columns whose sum is 1 where `block` has reached its goal place by the end of `layer`."""
-        return self._columns(("direct", "from_aside", "from_table"), block, slice(0, layer + 1))
+        """The column that is 1 where `block` has reached its goal place by the end of `layer`."""
+        return [int(self.arrived[block, layer])]
 
     def _leave_and_arrive_once(self) -> None:
         last = self.horizon - 1
@@ -209,13 +238,14 @@ class EventsBuilder:
                 self.milp.add_row(columns, [1] * len(columns), lower=1, upper=1)
 
     def _return_after_leaving(self) -> None:
+        """What comes back in a layer was off the stacks at the end of the layer before."""
         for block in sorted(self.problem.placed - self.problem.lying):
-            for away, back in (("aside", "from_aside"), ("fall", "from_table")):
+            for away, kind in ((self.rests, "from_aside"), (self.lies, "from_table")):
                 for layer in range(self.horizon):
-                    went = self._columns((away,), block, slice(0, layer))
-                    came = self._columns((back,), block, slice(0, layer + 1))
+                    came = self._columns((kind,), block, slice(layer, layer + 1))
+                    there = [int(away[block, layer - 1])] if layer else []
                     if came:
-                        self.milp.add_row([*came, *went], [*[1] * len(came), *[-1] * len(went)], upper=0)
+                        self.milp.add_row([*came, *there], [1, *[-1] * len(there)], upper=0)
 
     def _leave_in_order(self, lower: int, upper: int) -> None:
         """A pop needs all above gone in an earlier layer; a topple takes what is above with it."""
@@ -223,8 +253,8 @@ class EventsBuilder:
             gone = self._left(lower, layer)
             falling = [int(c) for c in self.edges["fall"][[lower], layer] if c >= 0]
             before = self._left(upper, layer - 1) if layer else []
-            popped = [column for column in gone if column not in falling]
-            self.milp.add_row([*popped, *before], [*[1] * len(popped), *[-1] * len(before)], upper=0)
+            values = [*[1] * len(gone), *[-1] * len(falling), *[-1] * len(before)]
+            self.milp.add_row([*gone, *falling, *before], values, upper=0)
             if falling:
                 above = self._left(upper, layer)
                 self.milp.add_row([*gone, *above], [*[1] * len(gone), *[-1] * len(above)], upper=0)
@@ -268,6 +298,8 @@ class EventsBuilder:
         `a` waits for `b` where a direct move of `b` must come before one of `a`.
         """
         direct = [b for b in range(len(self.problem.blocks)) if self.edges["direct"][b, 0] >= 0]
+        if len(direct) > MOST_CIRCLES:
+            return
         before = {a: {b for b in direct if b != a and self._comes_before(a, b)} for a in direct}
         for a in direct:
             for b in before[a]:
@@ -280,16 +312,12 @@ class EventsBuilder:
 
     def _comes_before(self, a: int, b: int) -> bool:
         """Whether a direct move of `a` must come before a direct move of `b`."""
-        source_a, target_b = self.source[a], self.target[b]
-        if source_a == target_b:
+        if self.source[a] == self.target[b]:
             return True
-        same_pile = self.source[b] == source_a and a > b
-        same_chain = any(a in chain and b in chain and chain.index(a) < chain.index(b) for _, chain in self._chains)
-        return same_pile or same_chain
-
-    @property
-    def _chains(self) -> tuple[tuple[str | None, tuple[int, ...]], ...]:
-        return self.problem.chains
+        if self.source[a] == self.source[b] and a > b:
+            return True
+        (chain_a, rank_a), (chain_b, rank_b) = self.rank[a], self.rank[b]
+        return chain_a == chain_b and rank_a < rank_b
 
     def _not_all_direct(self, blocks: tuple[int, ...]) -> None:
         columns = [c for block in blocks for c in self._columns(("direct",), block, slice(None))]

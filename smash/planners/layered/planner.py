@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from math import ceil
+from math import ceil, isfinite
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 
 SPARE_SECONDS = 0.05
 """Kept back from the budget for the solver to end and the last plan to be checked."""
+EVENT_SECONDS = 2e-4
+"""Generous estimate of the time to build and load the rows of one block in one layer (at one place)."""
+POSITION_SECONDS = 1e-3
+"""The same for a position: the solver's presolve, which keeps to no limit, takes most of it."""
 BOUND_ORIGIN = "layered relaxation"
 
 
@@ -66,15 +70,15 @@ class _Solve:
     """One solve: the stages, one after the other, until the bound meets the best plan or the budget is spent."""
 
     def __init__(self, instance: Instance, options: SolveOptions, budget: float, log: IncumbentLog) -> None:
-        from smash.planners.layered.events import LayeredProblem
+        from smash.planners.layered.events import TRANSFER_COST, LayeredProblem
 
         self.instance = instance
         self.options = options
         self.log = log
         self.deadline = perf_counter() + budget - min(SPARE_SECONDS, budget / 10) - log.elapsed
         self.problem: LayeredProblem = LayeredProblem.of(instance, options)
-        self.bound = 0
-        self.bound_origin = BOUND_ORIGIN
+        self.bound = TRANSFER_COST * len(self.problem.placed)
+        self.bound_origin = "each misplaced block moves"
         self.details: dict[str, Any] = {"stages": []}
 
     def run(self) -> PlanResult:
@@ -93,6 +97,14 @@ class _Solve:
         self._positions(chosen)
         return self.log.result(lower_bound=self.bound, bound_origin=self.bound_origin, details=self.details)
 
+    def _buildable(self, horizon: int, places: int, seconds_a_cell: float = EVENT_SECONDS) -> bool:
+        """Whether a model of so many cells can be built in the time left; says so in the details where not."""
+        cells = len(self.problem.blocks) * horizon * places
+        if cells * seconds_a_cell < self.deadline - perf_counter():
+            return True
+        self.details["stages"].append({"horizon": horizon, "skipped": f"{cells} cells take too long to build"})
+        return False
+
     def _done(self) -> bool:
         return (self.log.cost is not None and self.log.cost <= self.bound) or perf_counter() >= self.deadline
 
@@ -110,7 +122,7 @@ class _Solve:
         from smash.planners.layered.events import build_layered, read_events
         from smash.planners.layered.packing import Packing
 
-        if self._done():
+        if self._done() or not self._buildable(horizon, 1):
             return
         model = build_layered(self.problem, self.options, horizon)
 
@@ -118,15 +130,16 @@ class _Solve:
             return Packing(self.instance, self.problem, read_events(model, vector)).actions()
 
         result = self._run(horizon, "unbounded", model.milp, decode)
-        if proves:
+        if proves and isfinite(result.bound):
             self.bound = max(self.bound, ceil(result.bound - 1e-6))
+            self.bound_origin = BOUND_ORIGIN
 
     def _resting_stage(self, horizon: int) -> None:
         """The locations that there are, each block moved at most twice."""
         from smash.planners.layered.packing import Packing
         from smash.planners.layered.resting import build_resting, read_resting
 
-        if self._done():
+        if self._done() or not self._buildable(horizon, len(self.instance.locations)):
             return
         most = None if self.log.cost is None else self.log.cost - 1
         model = build_resting(self.instance, self.problem, self.options, horizon, self.bound, most)
@@ -170,6 +183,9 @@ class _Solve:
             enough = self._enough_layers()
             if enough is not None and chosen is None:
                 horizon = min(horizon, enough)
+            places = len(self.instance.locations) * len(self.problem.blocks)
+            if not self._buildable(horizon, places, POSITION_SECONDS):
+                return
             status = self._positions_stage(horizon)
             if status not in ("optimal", "infeasible") or chosen is not None:
                 return
