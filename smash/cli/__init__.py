@@ -20,6 +20,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "certify": ("smash.cli.certify", "write down why no plan is cheaper"),
     "verify": ("smash.cli.verify", "check a plan and its certificate of optimality, without a solver"),
     "import-blocks": ("smash.cli.import_blocks", "turn a blocks-world problem in PDDL into an instance"),
+    "model": ("smash.cli.model", "write the MILP that a planner would solve"),
     "draw": ("smash.cli.draw", "draw a gadget, an instance, or a plan as moving pebbles"),
     "compare": ("smash.cli.compare", "planners on the same instances: coverage, times, costs, proofs, failures"),
     "sweep": ("smash.cli.sweep", "run an experiment file: planners, instances, budgets, buffers, variants"),

@@ -93,7 +93,7 @@ def draw_plan_command(instance: Path, plan: Path, out: Path) -> None:
     if filed.actions is None:
         raise click.ClickException(f"{plan}: the file holds no plan (status {filed.status})")
     problem = _without_idle_buffers(problem, filed.actions)
-    motion = encode(problem, filed.actions, gadget_of(problem))
+    motion = encode(problem, filed.actions, gadget_of(problem, filed.options))
     draw_motion(motion, problem, out)
     click.echo(f"{out}: {motion.steps} steps, cost {motion.cost}")
 

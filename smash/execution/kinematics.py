@@ -19,9 +19,11 @@ POSITION_TOLERANCE = 1e-5
 """Error that counts as none: [m] for the linear and [rad] for the angular part."""
 DAMPING = 1e-3
 ITERATIONS = 40
+PATIENCE = 6
+"""A descent ends when so many iterations in a row have not halved its error."""
 LARGEST_STEP = 0.5
 """Largest change of any joint in one iteration [rad]."""
-RANDOM_SEEDS = 24
+RANDOM_SEEDS = 16
 SAME_SOLUTION = 0.05
 """Solutions closer than this in every joint count once [rad]."""
 
@@ -48,7 +50,7 @@ def inverse(
     """
     arm = robot or panda()
     found: list[Vector] = []
-    for start in _seeds(pose, reference, seed):
+    for start in _seeds(pose, reference, seed, arm):
         solution = descend(pose, start, arm)
         if solution is None or any(np.max(np.abs(solution - other)) < SAME_SOLUTION for other in found):
             continue
@@ -74,6 +76,7 @@ def descend(pose: ToolPose, start: Vector, robot: Panda, iterations: int = ITERA
     """One damped descent from `start` [rad], shape (7,): the solution, or None where it ends elsewhere."""
     target = pinocchio.SE3(pose.rotation, pose.position)
     joints = np.clip(start, LOWER, UPPER)
+    halved, patience = np.inf, PATIENCE
     for _ in range(iterations):
         pinocchio.computeJointJacobians(robot.model, robot.data, joints)
         placement = pinocchio.updateFramePlacement(robot.model, robot.data, robot.tool)
@@ -81,7 +84,13 @@ def descend(pose: ToolPose, start: Vector, robot: Panda, iterations: int = ITERA
         error = pinocchio.log6(placement.actInv(target)).vector
         if np.abs(error).max() < POSITION_TOLERANCE:
             return joints if within_limits(joints) else None
-        damping = DAMPING * min(1.0, float(error @ error))
+        square = float(error @ error)
+        if square < halved / 4:
+            halved, patience = square, PATIENCE
+        patience -= 1
+        if patience < 0:
+            return None
+        damping = DAMPING * min(1.0, square)
         system = jacobian @ jacobian.T
         system[np.diag_indices(6)] += damping
         step = jacobian.T @ np.linalg.solve(system, error)
@@ -116,25 +125,34 @@ def along_line(
     return found
 
 
-def _seeds(pose: ToolPose, reference: Vector, seed: int) -> Iterator[Vector]:
+def _seeds(pose: ToolPose, reference: Vector, seed: int, robot: Panda) -> Iterator[Vector]:
     """Where descents start: the reference, the ready pose turned towards the target, random configurations.
 
-    Joint 4 never starts at 0: stretched out, the arm is singular there and the limit is next to it.
+    All but the first are turned about the tool's axis by joint 7 as the pose asks. Joint 4 never starts at 0: stretched
+    out, the arm is singular there and the limit is next to it.
     """
     first = np.array(reference, dtype=np.float64)
     first[3] = min(first[3], -0.2)
     yield first
     bearing = float(np.arctan2(pose.position[1], pose.position[0]))
-    for turn in (0.0, np.pi / 2, -np.pi / 2, np.pi):
+    for shoulder in (0.0, 0.5, -0.5):
         turned = READY.copy()
-        turned[0] = bearing
-        turned[6] = (READY[6] + turn + np.pi) % (2 * np.pi) - np.pi
-        yield np.clip(turned, LOWER, UPPER)
+        turned[0], turned[2] = bearing + shoulder, -shoulder
+        yield _wrist_turned(turned, pose, robot)
     generator = np.random.default_rng(seed)
     for _ in range(RANDOM_SEEDS):
         joints = generator.uniform(LOWER, UPPER, JOINTS)
         joints[3] = min(joints[3], -0.4)
-        yield joints
+        yield _wrist_turned(joints, pose, robot)
+
+
+def _wrist_turned(joints: Vector, pose: ToolPose, robot: Panda) -> Vector:
+    """The configuration with joint 7 such that the tool's x axis points as the pose's does, as far as it goes."""
+    limited = np.clip(joints, LOWER, UPPER)
+    wanted = robot.forward(limited).rotation.T @ pose.rotation[:, 0]
+    angle = limited[6] + float(np.arctan2(wanted[1], wanted[0]))
+    limited[6] = np.clip((angle + np.pi) % (2 * np.pi) - np.pi, LOWER[6], UPPER[6])
+    return limited
 
 
 def _say(pose: ToolPose) -> str:

@@ -90,8 +90,8 @@ class MotionPlanner:
         checker = CollisionChecker(scene, held, self.margin if margin is None else margin)
         begin = np.ascontiguousarray(start, dtype=np.float64)
         self._require_free(begin, checker, "the start")
-        ends = self._free_goals(np.atleast_2d(np.asarray(goals, dtype=np.float64)), begin, checker)
         hulls = self._hulls(scene, held)
+        ends = self._free_goals(np.atleast_2d(np.asarray(goals, dtype=np.float64)), begin, checker, hulls)
         for end in ends:
             if checker.segment_free(begin, end):
                 straight = np.stack([begin, end])
@@ -197,11 +197,17 @@ class MotionPlanner:
             f"no path was found; the straight one is blocked by {_blocked_by(np.stack([begin, ends[0]]), checker)}"
         )
 
-    def _free_goals(self, goals: NDArray[np.float64], begin: Vector, checker: CollisionChecker) -> NDArray[np.float64]:
+    def _free_goals(
+        self, goals: NDArray[np.float64], begin: Vector, checker: CollisionChecker, hulls: HullChecker | None
+    ) -> NDArray[np.float64]:
         """The goals that are free, nearest to `begin` first."""
         free = [goal for goal in goals if within_limits(goal) and checker.free(goal)]
         if not free:
             self._require_free(np.ascontiguousarray(goals[0]), checker, "the goal")
+        touching = [self._contact(goal[None], hulls) for goal in free]
+        if all(touching):
+            raise NoMotion(f"at the goal, {touching[0]}")
+        free = [goal for goal, contact in zip(free, touching, strict=True) if contact is None]
         return np.stack(sorted(free, key=lambda goal: float(np.linalg.norm(goal - begin))))
 
     @staticmethod

@@ -70,7 +70,10 @@ def round_corners(waypoints: Waypoints, free: Callable[[Waypoints], bool]) -> Wa
         room = min(LONGEST_BLEND, lengths[corner - 1] / 2, lengths[corner] / 2)
         pieces.append(_rounded(waypoints, corner, room, free))
     pieces.append(waypoints[-1:])
-    return np.concatenate(pieces)
+    rounded = np.concatenate(pieces)
+    # Two arcs that share a segment may meet in its middle.
+    apart = np.any(np.abs(np.diff(rounded, axis=0)) > 1e-9, axis=1)
+    return np.asarray(rounded[np.concatenate([[True], apart])])
 
 
 def _rounded(waypoints: Waypoints, corner: int, room: float, free: Callable[[Waypoints], bool]) -> Waypoints:

@@ -12,13 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from smash.execution.errors import NoMotion
 from smash.execution.hulls import densify
 from smash.execution.paths import Path, Waypoints
 from smash.execution.robot import ACCELERATION, VELOCITY, panda
 
 KNOT_STEP = 0.01
 """Trajectories are stored at this interval [s]."""
-SPLINE_STEP = 0.08
+SPLINE_STEP = 0.05
 """Largest joint distance between the spline's points [rad]."""
 FEWEST_GRIDPOINTS, MOST_GRIDPOINTS = 40, 150
 
@@ -94,6 +95,9 @@ def time_path(path: Path, pace: Pace = FREE) -> Trajectory:
     Args:
         path: Where.
         pace: Share of the limits, and the tool's greatest speed.
+
+    Raises:
+        NoMotion: No trajectory along the path keeps the limits.
     """
     if path.length < 1e-9:
         return Trajectory(np.zeros(1), path.waypoints[:1], np.zeros((1, path.waypoints.shape[1])))
@@ -152,7 +156,7 @@ def _toppra(waypoints: Waypoints, pace: Pace) -> Trajectory:
     )
     result = algorithm.compute_trajectory(0.0, 0.0)
     if result is None:
-        raise RuntimeError("toppra found no parameterisation of a path within the joint limits")
+        raise NoMotion("the path cannot be followed within the arm's velocity and acceleration limits")
     times = np.append(np.arange(0.0, result.duration, KNOT_STEP), result.duration)
     positions, velocities = result(times), result(times, 1)
     positions[-1], velocities[-1] = waypoints[-1], 0.0

@@ -78,7 +78,8 @@ class Planner(Protocol):
       missing, a planner that is not `anytime` counts as dependent;
     - `prepare() -> None`, loads libraries and compiles what is compiled once, before the clock starts;
     - `proves: bool`, whether it can report `optimal`;
-    - `missing() -> str | None`, what is not installed that it needs.
+    - `missing() -> str | None`, what is not installed that it needs;
+    - `build_model(instance, options) -> Milp`, the MILP that `solve` starts with, for `smash model`.
     """
 
     def solve(

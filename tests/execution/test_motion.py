@@ -5,9 +5,10 @@ from smash.execution.collision import CollisionChecker
 from smash.execution.errors import NoMotion
 from smash.execution.kinematics import solve
 from smash.execution.motion import MotionPlanner
+from smash.execution.motion_benchmark import run, touching
 from smash.execution.poses import top_down
 from smash.execution.robot import READY, panda
-from smash.execution.scene import Attached, HandState
+from smash.execution.scene import Attached, HandState, Scene
 from tests.execution.towers import SIDE, tower_scene
 
 OPEN = HandState(SIDE / 2 + 0.01)
@@ -62,3 +63,33 @@ def test_a_line_through_a_tower_is_refused():
     scene = tower_scene({0.0: 9})
     with pytest.raises(NoMotion, match="is blocked by block"):
         MotionPlanner().line(above(-0.4, 0.2), (0.0, 0.35, 0.0), scene)
+
+
+def test_rounded_corners_stay_free_and_keep_the_ends():
+    scene = tower_scene({0.0: 9})
+    path = MotionPlanner(seed=1).plan(above(-0.5, 0.1), above(0.5, 0.1), scene)
+    turns = np.diff(path.waypoints, axis=0)
+    turns /= np.linalg.norm(turns, axis=1)[:, None]
+    assert np.degrees(np.arccos(np.clip(np.sum(turns[1:] * turns[:-1], axis=1), -1, 1))).max() < 90
+    assert MotionPlanner().contact(path.waypoints, scene) is None
+
+
+def test_an_empty_scene_and_a_motion_to_where_the_arm_is():
+    empty = Scene.of_boxes([], np.empty((0, 3)), 0.0)
+    path = MotionPlanner().plan(READY, READY, empty)
+    assert path.length == 0.0
+
+
+def test_of_several_goals_the_nearest_free_one_is_taken():
+    scene = tower_scene({0.0: 3})
+    goals = np.stack([above(0.0, SIDE * 3), above(0.6, 0.3), above(1.6, 0.3)])
+    assert np.array_equal(MotionPlanner().plan(READY, goals, scene).end, goals[1])
+
+
+@pytest.mark.slow
+def test_random_picks_places_and_pushes_are_fast_mostly_straight_and_touch_nothing():
+    tally = run(tables=40, blocks=9, seed=2)
+    assert touching(tally) == 0
+    assert tally.kinds["straight"] >= 0.6 * sum(tally.kinds.values())
+    assert np.median(tally.seconds["free motion"]) < 0.02
+    assert sum(tally.failures.values()) <= 4

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from smash.execution.motion import MotionPlanner
-from smash.execution.paths import Path
+from smash.execution.paths import Path, round_corners
 from smash.execution.robot import ACCELERATION, READY, VELOCITY, panda
 from smash.execution.scene import Scene
 from smash.execution.timing import Pace, time_path, topple_pace, trapezoid
@@ -46,3 +46,17 @@ def test_a_path_of_no_length_takes_no_time():
     trajectory = time_path(Path(np.stack([READY, READY]), "straight"))
     assert trajectory.duration == 0.0
     assert np.array_equal(trajectory.sample(0.01), READY[None])
+
+
+def test_a_trajectory_stays_on_its_path():
+    path = Path(round_corners(CORNERS, lambda _: True), "tree")
+    samples = time_path(path).sample(0.005)
+    begin, end = path.waypoints[:-1, None], path.waypoints[1:, None]
+    part = np.sum((samples - begin) * (end - begin), axis=2) / np.sum((end - begin) ** 2, axis=2)
+    nearest = begin + np.clip(part, 0, 1)[:, :, None] * (end - begin)
+    assert np.abs(samples - nearest).max(axis=2).min(axis=0).max() < 0.003
+
+
+def test_a_finer_sampling_of_a_trajectory_passes_through_the_coarser_one():
+    trajectory = time_path(Path(CORNERS, "tree"))
+    assert np.allclose(trajectory.sample(0.01)[:-1], trajectory.sample(0.002)[4::5][: len(trajectory.sample(0.01)) - 1])

@@ -67,6 +67,7 @@ def _words(actions: Sequence[Action]) -> Iterator[str]:
 def places(motion: PebbleMotion, layout: Layout, layer: int) -> list[Point]:
     """Return where each pebble is drawn at a layer; pebbles that share a node stand beside each other."""
     nodes = motion.gadget.nodes
+    held = Counter(motion.layers[layer])
     seen: Counter[int] = Counter()
     points = []
     for number in motion.layers[layer]:
@@ -77,7 +78,7 @@ def places(motion: PebbleMotion, layout: Layout, layer: int) -> list[Point]:
             pitch = min(2.2 * RADIUS, (layout.bar[1] - layout.bar[0] - 1.0) / max(1, len(motion.blocks)))
             x = layout.bar[0] + 0.6 + place * pitch
         elif nodes[number].kind is NodeKind.TOPPLE:
-            y += 0.3 * place
+            y += min(0.62, layout.crest / max(1, held[number] - 1)) * place
         points.append((x, y))
     return points
 
@@ -125,7 +126,7 @@ def _strip(motion: PebbleMotion, captions: list[str], path: Path) -> None:
     low, high = vertical_extent(motion.gadget, layout)
     wide, tall = SCALE * (layout.right - layout.left + 2.6), SCALE * (high - low) + 0.3
     layers = strip_layers(captions)
-    columns = min(len(layers), 4 if wide < 5 else 2)
+    columns = min(len(layers), (5 if len(layers) == 5 else 4) if wide < 5 else 2)
     rows = -(-len(layers) // columns)
     figure = new_figure(columns * wide, rows * tall)
     for index, layer in enumerate(layers):

@@ -70,13 +70,10 @@ def goal_piles(instance: Instance) -> tuple[dict[str, tuple[str, ...]], tuple[st
         case PositionsGoal() as goal:
             return goal.stacks(), instance.stacks, " (the rest anywhere)"
         case OnGoal() as goal:
-            towers = goal.towers()
-            grounded = set(goal.bottom)
-            piles = {
-                ("bottom " if tower[0] in grounded else "on any ") + str(n): tower for n, tower in enumerate(towers)
-            }
-            columns = {name: name.rsplit(" ", 1)[0] for name in piles}
-            return piles, tuple(columns), " (at any location)"
+            grounded, piles = set(goal.bottom), {}
+            for number, tower in enumerate(goal.towers()):
+                piles[f"{'floor' if tower[0] in grounded else 'any'} {number}"] = tower
+            return piles, tuple(piles), " (at any location, on its floor or on anything)"
 
 
 def paint_piles(

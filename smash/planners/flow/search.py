@@ -1,0 +1,188 @@
+"""Solves flow models of growing horizon: a short one for plans, then one that holds every cheaper plan.
+
+What a horizon of T steps proves: no plan is cheaper than the model's bound unless it needs more than T steps, and
+every plan of cost c or less fits into `StepBound.steps(c)` steps. So the bound that counts is the smaller of the
+model's and of c + 1, c the largest cost whose plans all fit.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import Any
+
+from smash.gadget.decode import decode
+from smash.planners import highs
+from smash.planners.flow.arcs import count_arcs, reaches_of
+from smash.planners.flow.horizon import step_bound
+from smash.planners.flow.model import FlowModel, build
+from smash.planners.flow.scope import scope_of
+from smash.planners.flow.warm import motion_of
+from smash.planners.milp import Floats, MilpResult
+from smash.planners.protocol import IncumbentLog, SolveOptions
+from smash.problem.errors import IllegalAction, SmashError
+from smash.problem.model import Instance
+
+MOST_ARCS = 1_500_000
+"""Arcs beyond which a model is not built: it would need some 10 GB and no solver would start on it in time."""
+ARCS_PER_SECOND = 100_000
+"""Arcs that are at least built in a second; a model that would take half the time left is not begun."""
+MOST_EDGES = 4_000_000
+"""Edges of the gadget times pebbles beyond which the gadget itself is not walked through."""
+
+NO_PROBING = 1 << 15
+"""HiGHS' presolve without probing, which costs more than it brings here: seconds before the first incumbent."""
+
+
+class TooLarge(SmashError):
+    """The flow model is too large to build."""
+
+    exit_code = 6
+
+
+@dataclass
+class FlowSearch:
+    """One solve: the models tried, the best bound, the incumbents.
+
+    Attributes:
+        lower: lower bound on the cost of any plan, proven so far.
+        origin: what proves it: `moves` (each misplaced block moves once) or `milp`.
+        details: sizes, horizons and times, for the result.
+    """
+
+    instance: Instance
+    options: SolveOptions
+    log: IncumbentLog
+    deadline: float
+    details: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        check_gadget_size(self.instance)
+        self.scope = scope_of(self.instance, self.options)
+        self.bound = step_bound(self.scope, self.options)
+        self.reaches = reaches_of(self.scope)
+        self.lower, self.origin = 2 * self.bound.moves, "moves"
+        self.details["models"] = []
+
+    @property
+    def proven(self) -> bool:
+        """Whether the best plan so far is proven optimal."""
+        return self.log.cost is not None and self.lower >= self.log.cost
+
+    def first_horizon(self) -> int:
+        """Return the horizon that plans are looked for with: the longest way of a pebble, a step per move, a topple."""
+        shortest = max(reach.shortest for reach in self.reaches.values())
+        moves = self.bound.moves or len(self.scope.moving)
+        horizon = max(1, shortest + moves + (2 if self.options.topple else 0))
+        return horizon if self.log.best is None else max(horizon, self._steps_of_best())
+
+    def run(self) -> None:
+        """Solve until proven, out of time, or, with a given horizon, once.
+
+        Raises:
+            TooLarge: where the first model cannot be built.
+        """
+        horizon = self.options.horizon or self.first_horizon()
+        while not self.proven and perf_counter() < self.deadline:
+            try:
+                result = self._solve(horizon)
+            except TooLarge as error:
+                if not self.details["models"]:
+                    raise
+                self.details["stopped"] = str(error)
+                return
+            if result.status not in ("optimal", "infeasible") or self.options.horizon is not None:
+                return
+            horizon = self._next_horizon(horizon)
+
+    def _next_horizon(self, horizon: int) -> int:
+        if self.log.cost is None:
+            return horizon + max(2, horizon // 4)
+        return max(horizon + 1, self.bound.steps(self.log.cost - 1))
+
+    def model(self, horizon: int) -> FlowModel:
+        """Build the model of a horizon.
+
+        Raises:
+            TooLarge: where it has too many arcs for the memory or the time left.
+        """
+        arcs = count_arcs(self.scope, self.reaches, horizon)
+        most = min(MOST_ARCS, ARCS_PER_SECOND * (self.deadline - perf_counter()) / 2)
+        if arcs > most:
+            raise TooLarge(f"the flow model has {arcs:,} arcs at horizon {horizon}; at most {most:,.0f} are built here")
+        return build(self.scope, self.reaches, horizon)
+
+    def _solve(self, horizon: int) -> MilpResult:
+        began = perf_counter()
+        model = self.model(horizon)
+        built = perf_counter()
+        start = self._start(model)
+
+        def report(_seconds: float, _objective: float, vector: Floats) -> None:
+            self._offer(model, vector)
+
+        result = highs.solve(
+            model.milp,
+            time_limit=self.deadline - perf_counter(),
+            threads=self.options.threads,
+            seed=self.options.seed,
+            start=start,
+            on_solution=report,
+            should_stop=lambda: perf_counter() > self.deadline or self.proven,
+            options={"presolve_rule_off": NO_PROBING},
+        )
+        if result.vector is not None:
+            self._offer(model, result.vector)
+        self._raise_bound(horizon, result)
+        self.details["models"].append(
+            {
+                "horizon": horizon,
+                **model.milp.size(),
+                "build_seconds": round(built - began, 3),
+                "solve_seconds": round(result.seconds, 3),
+                "nodes": result.nodes,
+                "status": result.status,
+                "started_from_a_plan": start is not None,
+            }
+        )
+        return result
+
+    def _offer(self, model: FlowModel, vector: Floats) -> None:
+        try:
+            self.log.offer(decode(model.motion(vector), self.scope.instance, self.options), "milp")
+        except IllegalAction as error:
+            self.log.refusals.append(f"milp: {error}")
+
+    def _start(self, model: FlowModel) -> Floats | None:
+        if self.log.best is None:
+            return None
+        return model.vector(motion_of(self.scope, self.instance, self.log.best))
+
+    def _steps_of_best(self) -> int:
+        return motion_of(self.scope, self.instance, self.log.best or ()).steps
+
+    def _raise_bound(self, horizon: int, result: MilpResult) -> None:
+        """Take the model's bound as far as the horizon holds all plans below it."""
+        most = self.log.cost if self.log.cost is not None else horizon * (1 + len(self.scope.gadget.locations))
+        fits = self.bound.fitting_cost(horizon, most) + 1
+        proves = fits if result.status == "infeasible" else min(fits, _rounded(result.bound))
+        if proves > self.lower:
+            self.lower, self.origin = proves, "milp"
+
+
+def check_gadget_size(instance: Instance) -> None:
+    """Refuse a gadget that is too large to walk through.
+
+    Raises:
+        TooLarge: naming its size.
+    """
+    blocks, locations = len(instance.blocks), len(instance.stacks) + min(len(instance.buffers), len(instance.blocks))
+    edges = blocks * (2 * locations * blocks + locations * locations + blocks * locations)
+    if edges > MOST_EDGES:
+        raise TooLarge(f"the gadget of {blocks} blocks and {locations} locations has {edges:,} edges to look at")
+
+
+def _rounded(bound: float) -> int:
+    """Round a dual bound up: costs are whole numbers."""
+    return math.ceil(bound - 1e-6) if math.isfinite(bound) else 0
