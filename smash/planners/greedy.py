@@ -36,7 +36,7 @@ class GreedyPlanner(BasePlanner):
         on_incumbent: OnIncumbent | None = None,
     ) -> PlanResult:
         """Plan at once; improve for some passes, within `budget` seconds."""
-        log = IncumbentLog(instance, options, on_incumbent)
+        log = IncumbentLog(instance, options, on_incumbent, gentle=True)
         reason = why_infeasible(instance, options)
         if reason is not None:
             return log.result(infeasible=True, bound_origin="feasibility", details={"reason": reason})

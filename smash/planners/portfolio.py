@@ -43,7 +43,7 @@ class SmashPlanner(BasePlanner):
         on_incumbent: OnIncumbent | None = None,
     ) -> PlanResult:
         """Plan for at most `budget` seconds of wall time; ends as soon as the best plan is proven optimal."""
-        log = IncumbentLog(instance, options, on_incumbent)
+        log = IncumbentLog(instance, options, on_incumbent, gentle=True)
         reason = why_infeasible(instance, options)
         if reason is not None:
             return log.result(infeasible=True, bound_origin="feasibility", details={"reason": reason})

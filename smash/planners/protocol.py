@@ -119,10 +119,27 @@ class IncumbentLog:
     One log a solve: make it first, so that its clock counts build and translation too.
     """
 
-    def __init__(self, instance: Instance, options: PlanOptions, on_incumbent: OnIncumbent | None = None) -> None:
+    def __init__(
+        self,
+        instance: Instance,
+        options: PlanOptions,
+        on_incumbent: OnIncumbent | None = None,
+        *,
+        gentle: bool = False,
+    ) -> None:
+        """Start the clock.
+
+        Args:
+            instance: the problem.
+            options: what a plan may use.
+            on_incumbent: called with every better plan.
+            gentle: let no block fall that can as well be picked from its stack (`gentle_topples`).
+        """
         self._started = perf_counter()
+        self._instance = instance
         self._law = Law(instance, options)
         self._report = on_incumbent
+        self._gentle = gentle
         self.entries: list[Incumbent] = []
         self.best: tuple[Action, ...] | None = None
         self.refusals: list[str] = []
@@ -154,12 +171,21 @@ class IncumbentLog:
         if not verdict.accepted:
             self.refusals.append(f"{origin}: {verdict}")
             return False
-        self.best = tuple(actions)
+        self.best = self._softened(actions)
         at = self.elapsed if seconds is None else seconds
         self.entries.append(Incumbent(at, len(self.best), origin))
         if self._report is not None:
             self._report(at, len(self.best), self.best)
         return True
+
+    def _softened(self, actions: Sequence[Action]) -> tuple[Action, ...]:
+        if self._gentle:
+            from smash.planners.gentle import gentle_topples
+
+            softened = gentle_topples(self._instance, actions)
+            if self._law.check(softened).accepted:
+                return softened
+        return tuple(actions)
 
     def result(
         self,

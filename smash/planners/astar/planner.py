@@ -27,7 +27,7 @@ class AStarPlanner(BasePlanner):
         on_incumbent: OnIncumbent | None = None,
     ) -> PlanResult:
         """Search for at most `budget` seconds; where memory or time ends, the bound proven so far is reported."""
-        log = IncumbentLog(instance, options, on_incumbent)
+        log = IncumbentLog(instance, options, on_incumbent, gentle=True)
         deadline = perf_counter() + budget
         reason = why_infeasible(instance, options)
         if reason is not None:

@@ -52,7 +52,7 @@ class LayeredPlanner(BasePlanner):
         on_incumbent: OnIncumbent | None = None,
     ) -> PlanResult:
         """Plan for at most `budget` seconds of wall time."""
-        log = IncumbentLog(instance, options, on_incumbent)
+        log = IncumbentLog(instance, options, on_incumbent, gentle=True)
         reason = why_infeasible(instance, options)
         if reason is not None:
             return log.result(infeasible=True, bound_origin="feasibility", details={"reason": reason})

@@ -41,7 +41,7 @@ class PrecedencePlanner(BasePlanner):
     ) -> PlanResult:
         """Plan for at most `budget` seconds of wall time."""
         deadline = perf_counter() + budget - min(SPARE_SECONDS, budget / 10)
-        log = IncumbentLog(instance, options, on_incumbent)
+        log = IncumbentLog(instance, options, on_incumbent, gentle=True)
         reason = why_infeasible(instance, options)
         if reason is not None:
             return log.result(infeasible=True, bound_origin="feasibility", details={"reason": reason})
