@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
-.PHONY: help test test-slow lint suites ablation ablation-full
+.PHONY: help test test-slow lint suites ablation ablation-full scaling
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -38,3 +38,7 @@ ablation-full: $(STAMP) ## the paper's whole grid: 9 blocks, 20 instances, buffe
 	$(BIN)/python -m smash sweep experiments/ablation-full.toml --out runs/ablation-full --dry-run
 	$(BIN)/python -m smash sweep experiments/ablation-full.toml --out runs/ablation-full
 	$(BIN)/python -m analysis.ablation runs/ablation-full
+
+scaling: $(STAMP) ## time over 4 to 1,000 blocks, per planner: curves and exponents (an hour or two; it can be resumed)
+	$(BIN)/smash scaling --out runs/scaling
+	$(BIN)/python -m analysis.scaling runs/scaling

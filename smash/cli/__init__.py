@@ -23,6 +23,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "model": ("smash.cli.model", "write the MILP that a planner would solve"),
     "draw": ("smash.cli.draw", "draw a gadget, an instance, or a plan as moving pebbles"),
     "compare": ("smash.cli.compare", "planners on the same instances: coverage, times, costs, proofs, failures"),
+    "scaling": ("smash.cli.scaling", "run planners over growing sizes, for curves of time against blocks"),
     "sweep": ("smash.cli.sweep", "run an experiment file: planners, instances, budgets, buffers, variants"),
 }
 """Subcommand -> (module that holds a click command called `command`, one line of help)."""

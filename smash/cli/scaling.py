@@ -1,0 +1,42 @@
+"""`smash scaling`: every planner over growing sizes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from smash.cli.sweep import installed_runs, run_all
+from smash.experiments.scaling import LARGEST, SIZES, scaling_experiment, write_scaling_suites
+
+
+@click.command("scaling")
+@click.option("--planner", "planners", multiple=True, metavar="NAME", help="Repeatable (default: those that scale).")
+@click.option("--largest", type=click.IntRange(min=4), default=SIZES[-1][0], show_default=True, help="Most blocks.")
+@click.option("--count", type=click.IntRange(min=1), default=3, show_default=True, help="Instances a size.")
+@click.option(
+    "--budget",
+    type=click.FloatRange(min=0, min_open=True),
+    default=20.0,
+    show_default=True,
+    metavar="SECONDS",
+    help="Of each run.",
+)
+@click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Runs at a time.")
+@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the instances.")
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), default="runs/scaling", show_default=True)
+def command(
+    planners: tuple[str, ...], largest: int, count: int, budget: float, jobs: int, seed: int, out: Path
+) -> None:
+    r"""Run planners on random instances of 4 to 1,000 blocks, with and without topple, and record every run.
+
+    Each size has no buffer, the paper's 12, and as many as blocks. Curves and growth exponents are made from the
+    records by `python -m analysis.scaling OUT`; `make scaling` does both. Start it again and it does what is left.
+
+    \b
+    Example:
+      smash scaling --planner precedence --planner greedy --largest 100
+    """
+    sizes = write_scaling_suites(out / "instances", largest, count, seed)
+    experiment = scaling_experiment(sizes, planners or tuple(LARGEST), budget)
+    run_all(installed_runs(experiment, out / "instances"), out, jobs, None)
