@@ -33,6 +33,7 @@ def test_exponents_are_slopes_on_log_axes():
     assert math.isnan(exponent(sizes, [1.0, 2.0, math.nan, math.nan]))
 
 
+@pytest.mark.slow
 def test_the_benchmark_runs_from_instances_to_curves(tmp_path):
     arguments = ["--planner", "precedence", "--largest", "4", "--count", "1", "--budget", "5", "--out", str(tmp_path)]
     ended = CliRunner().invoke(command, arguments)
