@@ -39,6 +39,6 @@ ablation-full: $(STAMP) ## the paper's whole grid: 9 blocks, 20 instances, buffe
 	$(BIN)/python -m smash sweep experiments/ablation-full.toml --out runs/ablation-full
 	$(BIN)/python -m analysis.ablation runs/ablation-full
 
-scaling: $(STAMP) ## time over 4 to 1,000 blocks, per planner: curves and exponents (an hour or two; it can be resumed)
+scaling: $(STAMP) ## time over 4 to 1,000 blocks, per planner: curves and exponents (hours; it can be resumed)
 	$(BIN)/smash scaling --out runs/scaling
 	$(BIN)/python -m analysis.scaling runs/scaling
