@@ -14,6 +14,7 @@ from smash.problem.errors import SmashError
 COMMANDS: dict[str, tuple[str, str]] = {
     "generate": ("smash.cli.generate", "make random benchmark instances (single-goal, multi-goal)"),
     "plan": ("smash.cli.plan", "plan one instance and print or write the plan"),
+    "execute": ("smash.cli.execute", "carry a plan out: Panda, PyBullet, partially grounded"),
     "validate": ("smash.cli.validate", "judge a plan by the law"),
     "export-pddl": ("smash.cli.export_pddl", "write an instance as PDDL for any planner outside"),
     "planners": ("smash.cli.planners", "list the planners, what they support and what is missing"),

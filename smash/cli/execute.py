@@ -1,0 +1,90 @@
+"""`smash execute INSTANCE PLAN`: carry a plan out in simulation."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from smash.cli import fail
+from smash.problem.files import read_instance, read_plan, write_text
+from smash.problem.plan import check_plan
+
+
+@click.command("execute")
+@click.argument("instance", type=click.Path(path_type=Path))
+@click.argument("plan", type=click.Path(path_type=Path))
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of the blocks' start poses.")
+@click.option("--scene", type=click.Path(path_type=Path), help="Scene file (default: the built-in scene).")
+@click.option("--no-replan", is_flag=True, help="The paper's open pipeline: the first failure ends the episode.")
+@click.option("--replanner", metavar="NAME", help="Planner to replan with (default: the plan's own, else greedy).")
+@click.option(
+    "--budget",
+    type=click.FloatRange(min=0, min_open=True, max=1e9),
+    default=10.0,
+    show_default=True,
+    metavar="SECONDS",
+    help="Of each replanning.",
+)
+@click.option("--replay", type=click.Path(path_type=Path, dir_okay=False), help="Write a 3D replay as one HTML page.")
+@click.option("--video", type=click.Path(path_type=Path, dir_okay=False), help="Write a film (.mp4 or .gif).")
+@click.option("--stills", type=click.Path(path_type=Path, dir_okay=False), help="Draw start, middle and end (.png).")
+@click.option("--trajectory", type=click.Path(path_type=Path, dir_okay=False), help="Write joint positions as CSV.")
+@click.option("--gui", is_flag=True, help="Show PyBullet's window.")
+@click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Also write the episode here.")
+def command(
+    instance: Path,
+    plan: Path,
+    seed: int,
+    scene: Path | None,
+    no_replan: bool,
+    replanner: str | None,
+    budget: float,
+    replay: Path | None,
+    video: Path | None,
+    stills: Path | None,
+    trajectory: Path | None,
+    gui: bool,
+    out: Path | None,
+) -> None:
+    r"""Carry PLAN out with the Panda in PyBullet and print the episode as JSON; exit 5 where the execution failed.
+
+    \b
+    Examples:
+      smash execute examples/figure1.json plan.json --replay episode.html
+      smash execute examples/figure1.json plan.json --seed 3 --no-replan
+    """
+    problem, filed = read_instance(instance), read_plan(plan)
+    verdict = check_plan(problem, filed)
+    if not verdict.accepted:
+        fail(f"{plan}: {verdict}", 3)
+    from smash.execution.scene_file import default_scene, read_scene
+
+    tabletop = default_scene() if scene is None else read_scene(scene)
+    tabletop.bind(problem)
+    from smash.execution.capture import Capture
+    from smash.execution.episode import episode_text
+    from smash.execution.executor import OPEN, Executor
+    from smash.experiments.replanning import replanner as make_replanner
+
+    capture = Capture(replay=replay, video=video, stills=stills, trajectory=trajectory)
+    executor = Executor(
+        problem,
+        filed,
+        tabletop,
+        seed=seed,
+        policy=OPEN if no_replan else None,
+        replanner=None if no_replan else make_replanner(replanner or filed.planner, filed.options, budget, seed),
+        gui=gui,
+        on_frame=capture.frame,
+    )
+    episode = executor.run()
+    capture.finish(executor, episode)
+    text = episode_text(episode)
+    click.echo(text, nl=False)
+    if out is not None:
+        write_text(out, text)
+    if episode.failure is not None:
+        failure = episode.failure
+        done = "nothing" if failure.action is None else " ".join(map(str, failure.action))
+        fail(f"{instance}: execution failed at step {failure.step} ({done}): {failure.name}: {failure.reason}", 5)

@@ -1,0 +1,95 @@
+"""The files that `smash execute` can leave beside the episode: replay, film, stills, joint trajectory."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+
+from smash.execution.episode import Episode
+from smash.execution.executor import Executor
+from smash.execution.recording import Recording
+from smash.execution.tabletop import Tabletop
+from smash.execution.world import Frame
+from smash.problem.errors import MalformedFile
+from smash.problem.files import write_text
+
+TRAJECTORY_INTERVAL = 0.01
+"""Time between two rows of an exported trajectory [s]."""
+
+
+class Capture:
+    """Records an episode where a file was asked for, and writes the files afterwards.
+
+    Raises:
+        MalformedFile: at once, where one of the files cannot be written.
+    """
+
+    def __init__(
+        self,
+        *,
+        replay: Path | None = None,
+        video: Path | None = None,
+        stills: Path | None = None,
+        trajectory: Path | None = None,
+    ) -> None:
+        self.replay, self.video, self.stills, self.trajectory = replay, video, stills, trajectory
+        _require_directories(path for path in (replay, video, stills, trajectory) if path is not None)
+        if video is not None:
+            from smash.execution.pictures import FILMS
+
+            if video.suffix not in FILMS:
+                raise MalformedFile(str(video), f"the name of a film ends in {' or '.join(FILMS)}")
+        self.recording = Recording()
+
+    @property
+    def frame(self) -> Frame | None:
+        """What the executor calls at each frame; None where nothing needs frames."""
+        return self.recording.take if self.replay or self.video or self.stills else None
+
+    def finish(self, executor: Executor, episode: Episode) -> None:
+        """Write what was asked for."""
+        tabletop = executor.tabletop
+        if self.trajectory is not None:
+            write_trajectory(self.trajectory, executor)
+        if self.replay is not None:
+            from smash.execution.replay import write_replay
+
+            write_replay(self.replay, self.recording, tabletop, episode, list(executor.instance.blocks))
+        if self.stills is not None:
+            self._write_stills(self.stills, tabletop, episode)
+        if self.video is not None:
+            from smash.execution.pictures import write_film
+
+            write_film(self.video, self.recording, tabletop)
+
+    def _write_stills(self, path: Path, tabletop: Tabletop, episode: Episode) -> None:
+        from smash.execution.pictures import write_stills
+
+        times = self.recording.times
+        middle = next(
+            (row.begun + row.times.execution for row in episode.actions if row.action[0] == "topple"),
+            times[len(times) // 2],
+        )
+        toppled = any(row.action[0] == "topple" for row in episode.actions)
+        end = "end" if episode.success else "end (failed)"
+        captions = [("start", times[0]), ("after the topple" if toppled else "on the way", middle), (end, times[-1])]
+        write_stills(path, self.recording, tabletop, captions)
+
+
+def write_trajectory(path: Path, executor: Executor) -> None:
+    """Write the commanded joint positions as CSV: time [s], joint1 to joint7 [rad]."""
+    lines, due = ["time," + ",".join(f"joint{number}" for number in range(1, 8))], -1.0
+    for moment, position in executor.world.recorded:
+        if moment >= due:
+            lines.append(f"{moment:.4f}," + ",".join(f"{value:.6f}" for value in np.asarray(position)))
+            due = moment + TRAJECTORY_INTERVAL - 1e-6
+    write_text(path, "\n".join(lines) + "\n")
+
+
+def _require_directories(paths: Iterable[Path]) -> None:
+    for path in paths:
+        if not os.access(path.parent, os.W_OK):
+            raise MalformedFile(str(path), "cannot be written: its directory is missing or closed")

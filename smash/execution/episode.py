@@ -1,0 +1,137 @@
+"""What an execution is recorded as: `smash-episode/1`.
+
+Times are in seconds: `offline` and `online` are wall time of motion planning before and during the episode, `execution`
+is simulated time, `task` is wall time of replanning the task. Wall times differ from run to run; everything else is a
+function of instance, plan, scene, seed and policy.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import msgspec
+
+EPISODE_FORMAT = "smash-episode/1"
+
+Origin = Literal["plan", "replan", "recovery"]
+
+
+class Times(msgspec.Struct, kw_only=True):
+    """Seconds of one action or of a whole episode."""
+
+    offline: float = 0.0
+    online: float = 0.0
+    execution: float = 0.0
+
+
+class Performed(msgspec.Struct, kw_only=True):
+    """One action as it was carried out.
+
+    Attributes:
+        step: 1-based, in the order of execution.
+        action: As in `smash-plan/1`.
+        origin: From the given plan, from a replanned one, or a recovery move of the executor.
+        outcome: "done", or the name of the failure.
+        reason: Of the failure, in words.
+        begun: Simulated time at which it began [s].
+        attempts: Motions tried, retries included.
+        gap: Whether it was a gap task, planned only when its pose was known.
+        repaired: Whether a motion planned before was planned again because the scene had changed.
+        times: Of this action.
+    """
+
+    step: int
+    action: list[str | int]
+    origin: Origin
+    outcome: str = "done"
+    reason: str | None = None
+    begun: float = 0.0
+    attempts: int = 1
+    gap: bool = False
+    repaired: bool = False
+    times: Times = msgspec.field(default_factory=Times)
+
+
+class Failure(msgspec.Struct, kw_only=True):
+    """Why an episode failed: the failure's name, the step and action at which it did, and the reason in words."""
+
+    name: str
+    step: int
+    action: list[str | int] | None
+    reason: str
+
+
+class Totals(msgspec.Struct, kw_only=True):
+    """Times of the whole episode; `execution` includes settling and the judges' waits are left out."""
+
+    offline: float
+    online: float
+    execution: float
+    task: float
+
+
+class Arrangement(msgspec.Struct, kw_only=True):
+    """Where the blocks are at the end, by the law."""
+
+    piles: dict[str, list[str]]
+    table: list[str]
+
+
+class Episode(msgspec.Struct, kw_only=True):
+    """An executed plan."""
+
+    format: str = EPISODE_FORMAT
+    instance: str
+    planner: str
+    topple: bool
+    max_topple: int | None
+    scene: str
+    seed: int
+    replanning: bool
+    success: bool
+    failure: Failure | None
+    plan_cost: int
+    actions_executed: int
+    replans: int
+    retries: int
+    times: Totals
+    final: Arrangement
+    actions: list[Performed]
+
+    def without_wall_times(self) -> dict[str, Any]:
+        """The part that the seed determines: equal for equal arguments."""
+        document: dict[str, Any] = msgspec.to_builtins(self)
+        for times in [document["times"], *(entry["times"] for entry in document["actions"])]:
+            for wall in ("offline", "online", "task"):
+                times.pop(wall, None)
+        return document
+
+
+def episode_text(episode: Episode) -> str:
+    """The JSON of an episode, one action a line."""
+    document = msgspec.to_builtins(_rounded(episode))
+    lines = []
+    for key, value in document.items():
+        if key == "actions":
+            rows = ",\n".join("  " + _json(row) for row in value)
+            lines.append(f' "actions": [\n{rows}\n ]' if value else ' "actions": []')
+        else:
+            lines.append(f" {_json(key)}: {_json(value)}")
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def _json(value: object) -> str:
+    return msgspec.json.format(msgspec.json.encode(value), indent=0).decode()
+
+
+def _rounded(value: object) -> object:
+    document = msgspec.to_builtins(value)
+
+    def walk(part: object) -> object:
+        if isinstance(part, float):
+            return round(part, 4)
+        if isinstance(part, dict):
+            return {key: walk(entry) for key, entry in part.items()}
+        return [walk(entry) for entry in part] if isinstance(part, list) else part
+
+    return walk(document)

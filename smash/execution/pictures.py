@@ -1,0 +1,138 @@
+"""Pictures and films of a recorded episode, drawn by PyBullet's software renderer in a connection of their own."""
+
+from __future__ import annotations
+
+import colorsys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from smash.execution.recording import Recording
+from smash.execution.tabletop import Tabletop
+from smash.execution.world import ARM, FINGERS, connect
+from smash.problem.errors import MalformedFile
+
+SIZE = (960, 640)
+"""Width and height of a picture [pixels]."""
+FILM_SIZE = (640, 426)
+SPEED_UP = 4
+"""A film runs this much faster than simulated time."""
+FILMS = (".mp4", ".gif")
+
+Image = NDArray[np.uint8]
+
+
+def block_colours(count: int) -> list[tuple[float, float, float]]:
+    """Red, green, blue in 0..1 for each block: hues spread evenly, neighbours told apart by brightness too."""
+    return [colorsys.hsv_to_rgb((index * 0.618) % 1.0, 0.72 - 0.2 * (index % 2), 0.92) for index in range(count)]
+
+
+class Stage:
+    """Robot, table, slots and blocks to be posed and photographed; use as a context manager."""
+
+    def __init__(self, tabletop: Tabletop, blocks: int) -> None:
+        import pybullet_data
+
+        self.client: Any = connect(gui=False)
+        c = self.client
+        c.setAdditionalSearchPath(pybullet_data.getDataPath())
+        self.robot: int = c.loadURDF("franka_panda/panda.urdf", useFixedBase=True)
+        self._box([0.85, 0.85, 0.01], [0, 0, -0.01], (0.90, 0.88, 0.84))
+        half = tabletop.side / 2
+        for slot in tabletop.slots:
+            colour = (0.62, 0.70, 0.82) if slot.directions else (0.78, 0.78, 0.76)
+            turn = c.getQuaternionFromEuler([0, 0, slot.angle])
+            self._box([half * 1.15, half * 1.15, 0.0005], [slot.x, slot.y, 0.0005], colour, turn)
+        self.blocks = [self._box([half] * 3, [0, 0, 0], colour) for colour in block_colours(blocks)]
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.client.disconnect()
+
+    def _box(
+        self,
+        half: Sequence[float],
+        position: Sequence[float],
+        colour: Sequence[float],
+        turn: Sequence[float] = (0, 0, 0, 1),
+    ) -> int:
+        c = self.client
+        shape = c.createVisualShape(c.GEOM_BOX, halfExtents=half, rgbaColor=[*colour, 1])
+        return int(c.createMultiBody(0, -1, shape, position, turn))
+
+    def pose(self, recording: Recording, frame: int) -> None:
+        """Move everything to where it was in a frame."""
+        for joint, value in zip((*ARM, *FINGERS), recording.joints[frame], strict=True):
+            self.client.resetJointState(self.robot, joint, float(value))
+        for body, row in zip(self.blocks, recording.blocks[frame], strict=True):
+            self.client.resetBasePositionAndOrientation(body, row[:3].tolist(), row[3:].tolist())
+
+    def photograph(self, size: tuple[int, int]) -> Image:
+        """A picture of the table, shape (height, width, 3)."""
+        c, (width, height) = self.client, size
+        view = c.computeViewMatrixFromYawPitchRoll([0.0, -0.02, 0.10], 1.32, 28.0, -40.0, 0.0, 2)
+        lens = c.computeProjectionMatrixFOV(52.0, width / height, 0.1, 5.0)
+        pixels = c.getCameraImage(
+            width, height, view, lens, shadow=1, lightDirection=[0.6, 0.4, 1.4], renderer=c.ER_TINY_RENDERER
+        )[2]
+        return np.asarray(pixels, dtype=np.uint8).reshape(height, width, 4)[:, :, :3]
+
+
+def write_stills(path: Path, recording: Recording, tabletop: Tabletop, moments: Sequence[tuple[str, float]]) -> None:
+    """Draw several moments of an episode side by side, each with its caption.
+
+    Args:
+        path: A picture file.
+        recording: The episode.
+        tabletop: Its scene.
+        moments: Caption and simulated time [s] of each picture.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(4.8 * len(moments), 3.5), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(1, len(moments), squeeze=False)[0]
+    with Stage(tabletop, recording.blocks[0].shape[0]) as stage:
+        for axis, (caption, moment) in zip(axes, moments, strict=True):
+            stage.pose(recording, recording.at(moment))
+            axis.imshow(stage.photograph(SIZE))
+            axis.set_title(caption)
+            axis.set_axis_off()
+    figure.savefig(path, dpi=150)
+
+
+def write_film(path: Path, recording: Recording, tabletop: Tabletop) -> None:
+    """Write an episode as a film, several times faster than it was.
+
+    Raises:
+        MalformedFile: where the name's ending is none that can be written.
+    """
+    if path.suffix not in FILMS:
+        raise MalformedFile(str(path), f"the name of a film ends in {' or '.join(FILMS)}")
+    import imageio.v2 as imageio
+
+    rate = SPEED_UP / (recording.times[1] - recording.times[0]) if len(recording.times) > 1 else 25.0
+    every = max(1, round(rate / 25.0))
+    options: dict[str, Any] = {"fps": rate / every}
+    if path.suffix == ".gif":
+        options = {"duration": 1000 * every / rate, "loop": 0}
+    writer: Any = imageio.get_writer(path, **options)
+    with writer:
+        for image in _images(recording, tabletop, every):
+            writer.append_data(image)
+
+
+def _images(recording: Recording, tabletop: Tabletop, every: int) -> Iterator[Image]:
+    with Stage(tabletop, recording.blocks[0].shape[0]) as stage:
+        for frame in range(0, len(recording.times), every):
+            stage.pose(recording, frame)
+            yield stage.photograph(FILM_SIZE)

@@ -1,0 +1,191 @@
+"""The topple: a straight push of the closed hand through the part of a pile that shall fall.
+
+The hand points down, its thin side along the push. It starts a run-up before the pile, with the fingertips a little
+above the cut, and goes on past the first contact by more than a block's side, so that the lowest falling block leaves
+its support too (paper: "a translational offset that guarantees contact in the intended direction").
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from math import cos, sin
+
+import numpy as np
+
+from smash.execution.block_pose import BlockPose
+from smash.execution.collision import FINGER_CORNERS, HAND_CORNERS, HAND_TO_TOOL
+from smash.execution.errors import ExecutionFailure, NoIk, NoMotion
+from smash.execution.kinematics import inverse
+from smash.execution.poses import Vector, top_down
+from smash.execution.robot import FINGERTIP_BEYOND_TOOL
+from smash.execution.scene import HandState, Scene
+from smash.execution.steps import Segment, Steps
+from smash.execution.tabletop import Slot
+from smash.execution.timing import Pace
+
+RUN_UP = 0.10
+"""From the start of the push to the first contact [m]."""
+ABOVE_CUT = 0.2
+"""Height of the fingertips above the cut, in sides of a block."""
+PUSH_MARGIN = 0.003
+"""Distance that the push keeps from all that shall not fall [m]."""
+PUSH_SOLUTIONS = 6
+LEAD = 0.08
+"""Length of the straight descent to a push close to the table [m]."""
+LANDING = {1: (0.15, 0.04), 2: (0.24, 0.04), 3: (0.35, 0.04), 4: (0.50, 0.10), 5: (0.65, 0.10)}
+"""Measured: how far along the push and how far aside of it blocks come to rest [m], by the number that fall."""
+
+
+@dataclass(frozen=True, slots=True)
+class Manner:
+    """How a push is done.
+
+    Attributes:
+        speed: Of the tool [m/s].
+        follow_through: How far the push goes on after the first contact, in sides of a block.
+    """
+
+    speed: float
+    follow_through: float
+
+
+SWEEP = Manner(0.3, 2.6)
+"""The whole pile falls and nothing stands below: slowly, and far enough to clear the pile's own place."""
+TALL_SWEEP = Manner(0.15, 2.6)
+"""The same with 5 blocks or more: the upper ones would be thrown out of reach by a faster push."""
+SHORT_CUT = Manner(0.5, 2.0)
+"""Up to 3 blocks fall from the rest of the pile."""
+TALL_CUT = Manner(0.8, 1.1)
+"""More fall: a quick, short push leaves the rest of the pile where it is, a long one drags it along."""
+
+
+def manner(height: int, falling: int) -> Manner:
+    """How to topple so many blocks from this height on; measured, see `smash topple-map`."""
+    if height == 1:
+        return TALL_SWEEP if falling >= 5 else SWEEP
+    return SHORT_CUT if falling <= 3 else TALL_CUT
+
+
+@dataclass(frozen=True, slots=True)
+class Strip:
+    """Where toppled blocks may come to rest: from the slot's middle along the push, and to both sides [m]."""
+
+    length: float
+    half_width: float
+
+
+def strip(falling: int) -> Strip:
+    """The landing strip of a topple of so many blocks."""
+    return Strip(*LANDING[min(falling, max(LANDING))])
+
+
+def directions(slot: Slot, falling: int, others: Iterable[BlockPose], side: float) -> list[str]:
+    """The slot's topple directions, those first whose landing strip holds the fewest other blocks.
+
+    Args:
+        slot: Where the pile stands.
+        falling: How many blocks shall fall.
+        others: Poses of all blocks that stand or lie elsewhere.
+        side: Side of a block [m].
+    """
+    area = strip(falling)
+    seen = [(float(pose.position[0]), float(pose.position[1])) for pose in others]
+
+    def in_the_way(direction: str) -> int:
+        places = [slot.coordinates(x, y, direction) for x, y in seen]
+        return sum(
+            -side < along < area.length + side and abs(aside) < area.half_width + side for along, aside in places
+        )
+
+    return sorted(slot.directions, key=in_the_way)
+
+
+def topple(
+    steps: Steps,
+    start: Vector,
+    slot: Slot,
+    pile: tuple[str, ...],
+    height: int,
+    poses: Mapping[str, BlockPose],
+) -> list[Segment]:
+    """From `start` [rad] to before the pile, through it from `height` upward, and back.
+
+    Args:
+        steps: Plans motions.
+        start: Where the arm is [rad], shape (7,).
+        slot: Where the pile stands.
+        pile: Its blocks, bottom first.
+        height: The lowest level that shall fall, 1 is the bottom.
+        poses: All blocks whose poses are known.
+
+    Raises:
+        NoIk, NoMotion: where no direction allows it; the message is about the preferred one.
+    """
+    falling = pile[height - 1 :]
+    others = [pose for name, pose in poses.items() if name not in pile]
+    scene = steps.scene(poses)
+    problem: ExecutionFailure | None = None
+    for direction in directions(slot, len(falling), others, steps.side):
+        try:
+            return _push(steps, start, slot, direction, falling, height, scene)
+        except ExecutionFailure as failure:
+            problem = problem or failure
+    raise problem or NoIk("the stack has no topple direction")
+
+
+def _push(
+    steps: Steps, start: Vector, slot: Slot, direction: str, falling: tuple[str, ...], height: int, scene: Scene
+) -> list[Segment]:
+    heading = slot.heading(direction)
+    along = np.array([cos(heading), sin(heading), 0.0])
+    reach = _first_contact(len(falling), steps.side)
+    base = np.array([slot.x, slot.y, (height - 1 + ABOVE_CUT) * steps.side + FINGERTIP_BEYOND_TOOL])
+    how = manner(height, len(falling))
+    length = RUN_UP + how.follow_through * steps.side
+    closed, fallen = HandState(0.0), frozenset(falling)
+    pushed = scene.without(falling)
+    problem: ExecutionFailure | None = None
+    for yaw in (heading, heading + np.pi):
+        pose = top_down(base - (reach + RUN_UP) * along, yaw)
+        for joints in inverse(pose, start, count=PUSH_SOLUTIONS):
+            try:
+                push = steps.motion.line(joints, length * along, pushed, hand=closed, margin=PUSH_MARGIN)
+                way, away = _way_in(steps, start, joints, scene)
+            except ExecutionFailure as failure:
+                problem = problem or failure
+                continue
+            return [
+                *way,
+                steps.move(push, closed, fallen, PUSH_MARGIN, Pace(tool_speed=how.speed)),
+                steps.move(push.reversed(), closed, fallen, PUSH_MARGIN),
+                *away,
+            ]
+    raise problem or NoIk(f"the hand cannot reach the start of a {direction} push at height {height}")
+
+
+def _way_in(steps: Steps, start: Vector, joints: Vector, scene: Scene) -> tuple[list[Segment], list[Segment]]:
+    """From `start` to before the pile and away from there: directly, or from above where the table is close.
+
+    Raises:
+        NoIk, NoMotion: where neither is possible.
+    """
+    closed = HandState(0.0)
+    try:
+        return [*steps.transfer(start, joints, scene, closed)], []
+    except NoMotion:
+        down = steps.motion.line(joints, (0.0, 0.0, LEAD), scene, hand=closed, margin=PUSH_MARGIN).reversed()
+        above = steps.transfer(start, down.start, scene, closed)
+        return [*above, steps.move(down, closed, margin=PUSH_MARGIN)], [
+            steps.move(down.reversed(), closed, margin=PUSH_MARGIN)
+        ]
+
+
+def _first_contact(falling: int, side: float) -> float:
+    """Distance of the tool's axis from the pile's middle when hand or fingers first touch it [m].
+
+    A single block passes below the palm and is met by the fingers; the palm is thicker and meets taller segments first.
+    """
+    palm_above_cut = ABOVE_CUT * side + FINGERTIP_BEYOND_TOOL + HAND_TO_TOOL - float(HAND_CORNERS[1, 2])
+    thickness = HAND_CORNERS[1, 0] if falling * side > palm_above_cut else FINGER_CORNERS[1, 0]
+    return side / 2 + float(thickness)

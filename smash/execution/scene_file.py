@@ -1,0 +1,125 @@
+"""Scene files, `smash-scene/1`: block size, friction, speed and layout, in TOML or JSON, checked strictly."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from functools import cache
+from math import radians
+from pathlib import Path
+from typing import Annotated, Any, Literal, cast
+
+import msgspec
+
+from smash.execution.tabletop import DIRECTIONS, Friction, Slot, Tabletop
+from smash.problem.errors import MalformedFile
+from smash.problem.files import check_format, convert, parse_json, read_bytes
+
+SCENE_FORMAT = "smash-scene/1"
+DEFAULT_SCENE = Path(__file__).parent / "scenes" / "default.toml"
+
+_Share = Annotated[float, msgspec.Meta(gt=0.0, le=1.0)]
+_Coefficient = Annotated[float, msgspec.Meta(gt=0.0, le=2.0)]
+
+
+class _BlockFile(msgspec.Struct, forbid_unknown_fields=True):
+    side: Annotated[float, msgspec.Meta(ge=0.03, le=0.06)] = 0.045
+    mass: Annotated[float, msgspec.Meta(gt=0.0, le=1.0)] = 0.1
+
+
+class _FrictionFile(msgspec.Struct, forbid_unknown_fields=True):
+    block: _Coefficient = 0.45
+    table: _Coefficient = 0.9
+    finger: _Coefficient = 1.0
+
+
+class _SpeedFile(msgspec.Struct, forbid_unknown_fields=True):
+    velocity: _Share = 0.5
+    acceleration: _Share = 0.25
+
+
+class _BufferFile(msgspec.Struct, forbid_unknown_fields=True):
+    radius: Annotated[float, msgspec.Meta(ge=0.25, le=0.75)]
+    angle: Annotated[float, msgspec.Meta(ge=-180.0, le=180.0)]
+
+
+class _StackFile(_BufferFile, forbid_unknown_fields=True):
+    topple: list[Literal["counter-clockwise", "clockwise", "outward", "inward"]]
+
+
+class _SceneFile(msgspec.Struct, forbid_unknown_fields=True):
+    format: Literal["smash-scene/1"]
+    name: str
+    stacks: list[_StackFile]
+    block: _BlockFile = msgspec.field(default_factory=_BlockFile)
+    friction: _FrictionFile = msgspec.field(default_factory=_FrictionFile)
+    speed: _SpeedFile = msgspec.field(default_factory=_SpeedFile)
+    buffers: list[_BufferFile] = []
+
+
+def read_scene(path: str | os.PathLike[str]) -> Tabletop:
+    """Read and check a scene file: TOML where its name ends in `.toml`, else JSON.
+
+    Raises:
+        MalformedFile: with one line that says where and what is allowed.
+    """
+    where = os.fspath(path)
+    return scene_from_document(_parse(read_bytes(path), where), where)
+
+
+@cache
+def default_scene() -> Tabletop:
+    """The scene that is used where none is named."""
+    return read_scene(DEFAULT_SCENE)
+
+
+def scene_from_document(document: Any, where: str = "scene") -> Tabletop:
+    """Check a parsed `smash-scene/1` document and build the tabletop.
+
+    Raises:
+        MalformedFile: with one line that says where and what is allowed.
+    """
+    check_format(document, SCENE_FORMAT, where)
+    file = cast(_SceneFile, convert(document, _SceneFile, where))
+    if not file.stacks:
+        raise MalformedFile(where, "`stacks`: at least one is needed")
+    for number, stack in enumerate(file.stacks):
+        if not stack.topple or len(set(stack.topple)) < len(stack.topple):
+            known = ", ".join(DIRECTIONS)
+            raise MalformedFile(where, f"`stacks[{number}].topple`: one or more of {known}, each once")
+    table = Tabletop(
+        name=file.name,
+        side=file.block.side,
+        mass=file.block.mass,
+        friction=Friction(file.friction.block, file.friction.table, file.friction.finger),
+        velocity=file.speed.velocity,
+        acceleration=file.speed.acceleration,
+        stacks=tuple(Slot(s.radius, radians(s.angle), tuple(s.topple)) for s in file.stacks),
+        buffers=tuple(Slot(b.radius, radians(b.angle)) for b in file.buffers),
+    )
+    _refuse_overlap(table, where)
+    return table
+
+
+def _parse(content: bytes, where: str) -> Any:
+    if not where.endswith(".toml"):
+        return parse_json(content, where)
+    try:
+        return tomllib.loads(content.decode("utf-8"))
+    except UnicodeDecodeError:
+        raise MalformedFile(where, "not UTF-8 text") from None
+    except tomllib.TOMLDecodeError as error:
+        raise MalformedFile(where, f"not TOML: {error}") from None
+
+
+def _refuse_overlap(table: Tabletop, where: str) -> None:
+    """Two piles that touch are no layout; whether they stand far enough apart is `conditions`' question."""
+    slots = table.slots
+    names = [f"stacks[{i}]" for i in range(len(table.stacks))] + [f"buffers[{i}]" for i in range(len(table.buffers))]
+    for first, slot in enumerate(slots):
+        for second in range(first + 1, len(slots)):
+            apart = slot.distance(slots[second].x, slots[second].y)
+            if apart < 1.5 * table.side:
+                least = 1.5 * table.side
+                problem = f"stands {apart:.3f} m from {names[first]}; {least:.3f} or more is allowed"
+                raise MalformedFile(where, f"`{names[second]}`: {problem}")

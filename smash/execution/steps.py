@@ -1,0 +1,265 @@
+"""How the arm carries out one pick or place, given where the blocks are: grasps and the motions to them.
+
+Used twice by partial grounding: before the episode on the poses that are known, and during it on those that were
+revealed. Nothing here knows the simulator.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from smash.execution.block_pose import QUARTER, BlockPose
+from smash.execution.collision import CONTACT_MARGIN, DEFAULT_MARGIN, CollisionChecker
+from smash.execution.errors import ExecutionFailure, NoIk, NoMotion
+from smash.execution.kinematics import inverse
+from smash.execution.motion import MotionPlanner
+from smash.execution.paths import Path
+from smash.execution.poses import Vector, top_down
+from smash.execution.robot import MAX_OPENING
+from smash.execution.scene import Attached, HandState, Scene
+from smash.execution.tabletop import Slot
+from smash.execution.timing import Pace, Trajectory, time_path
+
+OPENINGS = (0.010, 0.005)
+"""Room between a finger and the block before it is grasped [m], the wide one first."""
+HOVERS = (0.10, 0.06, 0.03)
+"""Lengths of the straight descent to a block [m], the long one first."""
+ENOUGH_CLEARANCE = 0.010
+"""Grasps with this much clearance are equally good [m]."""
+RELEASE_HEIGHT = 0.001
+"""A block is let go this far above what carries it [m]."""
+ESCAPES = (0.03, 0.06, 0.10, 0.15)
+"""Heights that the hand is lifted by where it stands too close to something to begin a motion [m]."""
+TIGHT_MARGINS = (0.005, 0.001)
+"""Distances that a motion keeps where neither is possible [m]."""
+SOLUTIONS = 3
+CLOSE_SECONDS = 0.3
+OPEN_SECONDS = 0.2
+
+
+@dataclass(frozen=True, eq=False)
+class Move:
+    """One motion of the arm.
+
+    Attributes:
+        path: Where.
+        trajectory: When.
+        hand: Fingers and carried block meanwhile.
+        ignored: Blocks that it may touch.
+        margin: Distance that it was planned to keep [m].
+    """
+
+    path: Path
+    trajectory: Trajectory
+    hand: HandState
+    ignored: frozenset[str]
+    margin: float
+
+    @property
+    def opening(self) -> float:
+        """What the fingers are sent to [m]: shut where they hold a block."""
+        return 0.0 if self.hand.attached is not None else self.hand.opening
+
+    def free(self, scene: Scene, allowance: float) -> bool:
+        """Whether the motion keeps its margin, less `allowance` [m], in another scene."""
+        checker = CollisionChecker(scene.without(self.ignored), self.hand, self.margin - allowance)
+        return checker.path_free(self.path.waypoints)
+
+
+@dataclass(frozen=True, slots=True)
+class Grip:
+    """The fingers move to `opening` [m from the middle] for `seconds`, the arm stands still."""
+
+    opening: float
+    seconds: float
+
+
+Segment = Move | Grip
+
+
+@dataclass(frozen=True, eq=False)
+class Approach:
+    """The straight way down to a block or a place, and how much room the hand has there.
+
+    Attributes:
+        line: From above down to the contact.
+        opening: Of the fingers when they are open there [m].
+        clearance: Room between hand or fingers and everything else [m].
+    """
+
+    line: Path
+    opening: float
+    clearance: float
+
+
+class Steps:
+    """Plans the motions of single actions.
+
+    Args:
+        side: Side of a block [m].
+        pace: Share of the arm's limits that motions use.
+        seed: Of the motion planner.
+    """
+
+    def __init__(self, side: float, pace: Pace, seed: int = 0) -> None:
+        self.side = side
+        self.pace = pace
+        self.motion = MotionPlanner(seed=seed)
+
+    def scene(self, poses: Mapping[str, BlockPose]) -> Scene:
+        """Blocks and table as the motion planner sees them."""
+        names = list(poses)
+        centres = np.array([poses[name].position for name in names]).reshape(-1, 3)
+        rotations = np.array([poses[name].rotation for name in names]).reshape(-1, 3, 3)
+        return Scene.of_boxes(names, centres, self.side / 2, rotations).with_table()
+
+    def held(self, block: str) -> HandState:
+        """The hand with `block` between the fingers."""
+        return HandState(self.side / 2, Attached.cube(block, self.side))
+
+    def pick(self, start: Vector, block: str, pose: BlockPose, scene: Scene) -> list[Segment]:
+        """From `start` [rad] to above the block, down, close, and up again.
+
+        Raises:
+            NoIk, NoMotion: where no grasp can be reached; the message is about the one with most room.
+        """
+        yaws = [pose.yaw + turn * QUARTER for turn in range(4)]
+        near = scene.without([block])
+        approaches = self._approaches(start, pose.position, yaws, near, self._openings(), carried=None)
+        problem: ExecutionFailure | None = None
+        for approach in approaches:
+            open_hand = HandState(approach.opening)
+            try:
+                transfer = self.transfer(start, approach.line.start, scene, open_hand)
+            except NoMotion as failure:
+                problem = problem or failure
+                continue
+            touched = frozenset([block])
+            return [
+                *transfer,
+                self.move(approach.line, open_hand, touched, CONTACT_MARGIN),
+                Grip(0.0, CLOSE_SECONDS),
+                self.move(approach.line.reversed(), self.held(block), touched, CONTACT_MARGIN),
+            ]
+        raise problem or NoMotion(f"no room for the hand around block {block!r}")
+
+    def landing(self, start: Vector, block: str, slot: Slot, level: int, scene: Scene) -> Approach:
+        """The way down to the `level`-th place of a slot (1 is the bottom), carrying `block`.
+
+        Raises:
+            NoIk, NoMotion: where there is none.
+        """
+        target = np.array([slot.x, slot.y, (level - 0.5) * self.side + RELEASE_HEIGHT])
+        yaws = [slot.angle + turn * QUARTER for turn in range(4)]
+        near = scene.without([block])
+        for approach in self._approaches(start, target, yaws, near, self._openings(), carried=block):
+            return approach
+        raise NoMotion(f"no room for the hand at height {level} of the place at x {slot.x:.2f}, y {slot.y:.2f} m")
+
+    def place(self, start: Vector, block: str, approach: Approach, scene: Scene) -> list[Segment]:
+        """From `start` [rad] with the block to above the place, down, open, and up again.
+
+        Raises:
+            NoMotion: where the way there is blocked.
+        """
+        carrying, touched = self.held(block), frozenset([block])
+        free = scene.without([block])
+        return [
+            *self.transfer(start, approach.line.start, free, carrying),
+            self.move(approach.line, carrying, touched, CONTACT_MARGIN),
+            Grip(approach.opening, OPEN_SECONDS),
+            self.move(approach.line.reversed(), HandState(approach.opening), touched, CONTACT_MARGIN),
+        ]
+
+    def transfer(self, start: Vector, goal: Vector, scene: Scene, hand: HandState) -> list[Move]:
+        """A free motion between configurations [rad], shape (7,); upward first where the start is too close to blocks.
+
+        Raises:
+            NoMotion: where there is none.
+        """
+        try:
+            return [self.move(self.motion.plan(start, goal, scene, hand=hand), hand)]
+        except NoMotion as failure:
+            if CollisionChecker(scene, hand, DEFAULT_MARGIN).free(start):
+                raise
+            for height in ESCAPES:
+                try:
+                    up = self.motion.line(start, (0.0, 0.0, height), scene, hand=hand)
+                    onward = self.motion.plan(up.end, goal, scene, hand=hand)
+                except ExecutionFailure:
+                    continue
+                return [self.move(up, hand, margin=CONTACT_MARGIN), self.move(onward, hand)]
+            for margin in TIGHT_MARGINS:
+                try:
+                    return [
+                        self.move(self.motion.plan(start, goal, scene, hand=hand, margin=margin), hand, margin=margin)
+                    ]
+                except NoMotion:
+                    continue
+            raise failure
+
+    def _openings(self) -> list[float]:
+        return [min(MAX_OPENING, self.side / 2 + room) for room in OPENINGS]
+
+    def _approaches(
+        self,
+        start: Vector,
+        point: Vector,
+        yaws: Sequence[float],
+        near: Scene,
+        openings: Iterable[float],
+        carried: str | None,
+    ) -> Iterable[Approach]:
+        """Ways down to a point, those with most room first; equal ones by how near they are to `start`.
+
+        Raises:
+            NoIk: where the arm cannot reach the point from above.
+        """
+        poses = [top_down(point, yaw) for yaw in yaws]
+        solutions = [joints for pose in poses for joints in inverse(pose, start, count=SOLUTIONS)]
+        if not solutions:
+            raise NoIk(f"the hand cannot reach x {point[0]:.3f}, y {point[1]:.3f}, z {point[2]:.3f} m from above")
+        ranked = []
+        for opening in openings:
+            checker = CollisionChecker(near, HandState(opening), 0.0)
+            for joints in solutions:
+                clearance = checker.slack(joints)
+                if clearance > CONTACT_MARGIN:
+                    far = float(np.abs(joints - start).max())
+                    ranked.append((-min(clearance, ENOUGH_CLEARANCE), -opening, far, clearance, joints))
+            if any(entry[0] <= -ENOUGH_CLEARANCE for entry in ranked):
+                break
+        ranked.sort(key=lambda entry: entry[:3])
+        for height in HOVERS:
+            for _, negative, _, clearance, joints in ranked:
+                leaving = HandState(-negative)
+                going = leaving if carried is None else self.held(carried)
+                line = self._line_down(joints, height, near, going, leaving)
+                if line is not None:
+                    yield Approach(line, -negative, clearance)
+
+    def _line_down(
+        self, joints: Vector, height: float, near: Scene, going: HandState, leaving: HandState
+    ) -> Path | None:
+        """The straight way down that the hand can take as it comes and as it leaves, or None."""
+        try:
+            up = self.motion.line(joints, (0.0, 0.0, height), near, hand=going)
+            if going is not leaving:
+                self.motion.line(joints, (0.0, 0.0, height), near, hand=leaving)
+        except ExecutionFailure:
+            return None
+        return up.reversed()
+
+    def move(
+        self,
+        path: Path,
+        hand: HandState,
+        ignored: frozenset[str] = frozenset(),
+        margin: float = DEFAULT_MARGIN,
+        pace: Pace | None = None,
+    ) -> Move:
+        """A timed motion along `path`, at the usual pace where none is given."""
+        return Move(path, time_path(path, pace or self.pace), hand, ignored, margin)

@@ -1,0 +1,229 @@
+"""The physics of one episode: PyBullet with the Panda and the blocks.
+
+A world is opened once per episode and never used again: only a fresh connection with `deterministicOverlappingPairs`
+repeats an episode bit for bit. Everything that moves in it goes through `follow`, `grip` and `wait`.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from collections.abc import Callable, Mapping
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from smash.execution.block_pose import BlockPose
+from smash.execution.tabletop import Tabletop
+from smash.execution.timing import Trajectory
+
+STEP = 1 / 480
+"""Physics time step [s]: at 1/240 tall stacks drift by millimetres."""
+ITERATIONS = 50
+ARM = tuple(range(7))
+FINGERS = (9, 10)
+TOOL_LINK = 11
+ARM_FORCE = (87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)
+FINGER_FORCE = 40.0
+FINGER_SPEED = 0.2
+STILL_LINEAR = 0.003
+"""Blocks slower than this [m/s] and ..."""
+STILL_ANGULAR = 0.05
+"""... this [rad/s] are at rest."""
+
+Frame = Callable[["World"], None]
+
+
+class World:
+    """Panda, table and blocks in one PyBullet connection; use as a context manager."""
+
+    def __init__(
+        self,
+        tabletop: Tabletop,
+        blocks: Mapping[str, BlockPose],
+        ready: NDArray[np.float64],
+        *,
+        gui: bool = False,
+        on_frame: Frame | None = None,
+        frame_interval: float = 1 / 25,
+    ) -> None:
+        self.tabletop = tabletop
+        self.time = 0.0
+        self.opening = 0.04
+        self._on_frame = on_frame
+        self._frame_interval = frame_interval
+        self._next_frame = 0.0
+        self._target = np.array(ready, dtype=np.float64)
+        self.recorded: list[tuple[float, NDArray[np.float64]]] = []
+        self.client: Any = connect(gui)
+        try:
+            self._set_up(blocks)
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the connection."""
+        if self.client is not None:
+            self.client.disconnect()
+            self.client = None
+
+    def _set_up(self, blocks: Mapping[str, BlockPose]) -> None:
+        import pybullet_data
+
+        c, friction, side = self.client, self.tabletop.friction, self.tabletop.side
+        c.setPhysicsEngineParameter(fixedTimeStep=STEP, numSolverIterations=ITERATIONS, deterministicOverlappingPairs=1)
+        c.setGravity(0, 0, -9.81)
+        c.setAdditionalSearchPath(pybullet_data.getDataPath())
+        shape = c.createCollisionShape(c.GEOM_BOX, halfExtents=[1.5, 1.5, 0.05])
+        self.table: int = c.createMultiBody(0, shape, -1, [0, 0, -0.05])
+        c.changeDynamics(self.table, -1, lateralFriction=friction.table)
+        c.changeVisualShape(self.table, -1, rgbaColor=[0.93, 0.91, 0.87, 1])
+        self.robot: int = c.loadURDF("franka_panda/panda.urdf", useFixedBase=True)
+        for finger in FINGERS:
+            c.changeDynamics(self.robot, finger, lateralFriction=friction.finger)
+        for joint in ARM:
+            c.resetJointState(self.robot, joint, float(self._target[joint]))
+        for finger in FINGERS:
+            c.resetJointState(self.robot, finger, self.opening)
+        box = c.createCollisionShape(c.GEOM_BOX, halfExtents=[side / 2] * 3)
+        self.bodies: dict[str, int] = {}
+        for name, pose in blocks.items():
+            body = c.createMultiBody(self.tabletop.mass, box, -1, pose.position.tolist(), quaternion_of(pose.rotation))
+            c.changeDynamics(body, -1, lateralFriction=friction.block)
+            self.bodies[name] = body
+        self._command(self._target, np.zeros(7))
+
+    def _command(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> None:
+        c = self.client
+        c.setJointMotorControlArray(
+            self.robot,
+            ARM,
+            c.POSITION_CONTROL,
+            targetPositions=position.tolist(),
+            targetVelocities=velocity.tolist(),
+            forces=ARM_FORCE,
+        )
+        for finger in FINGERS:
+            c.setJointMotorControl2(
+                self.robot,
+                finger,
+                c.POSITION_CONTROL,
+                targetPosition=self.opening,
+                force=FINGER_FORCE,
+                maxVelocity=FINGER_SPEED,
+            )
+
+    def _step(self) -> None:
+        self.client.stepSimulation()
+        self.time += STEP
+        if self._on_frame is not None and self.time >= self._next_frame:
+            self._next_frame += self._frame_interval
+            self._on_frame(self)
+
+    def follow(self, trajectory: Trajectory, opening: float | None = None) -> None:
+        """Let the arm follow a trajectory; the fingers go to `opening` [m from the middle] meanwhile, if given."""
+        if opening is not None:
+            self.opening = opening
+        positions = trajectory.sample(STEP)
+        begin = np.vstack([trajectory.positions[:1], positions[:-1]])
+        for position, velocity in zip(positions, (positions - begin) / STEP, strict=True):
+            self._command(position, velocity)
+            self._step()
+            self.recorded.append((self.time, position))
+        self._target = trajectory.positions[-1].copy()
+        self._command(self._target, np.zeros(7))
+
+    def wait(self, seconds: float) -> None:
+        """Let time pass."""
+        for _ in range(max(1, round(seconds / STEP))):
+            self._step()
+
+    def grip(self, opening: float, seconds: float) -> None:
+        """Move each finger towards `opening` [m] from the middle, for `seconds`."""
+        self.opening = opening
+        self._command(self._target, np.zeros(7))
+        self.wait(seconds)
+
+    def settle(self, longest: float = 3.0, interval: float = 0.05) -> bool:
+        """Let time pass until all blocks are at rest, `longest` seconds at most; say whether they are."""
+        calm = 0
+        for _ in range(round(longest / interval)):
+            self.wait(interval)
+            calm = calm + 1 if self.still() else 0
+            if calm >= 2:
+                return True
+        return False
+
+    def still(self) -> bool:
+        """Whether every block is at rest."""
+        for body in self.bodies.values():
+            linear, angular = self.client.getBaseVelocity(body)
+            if np.linalg.norm(linear) > STILL_LINEAR or np.linalg.norm(angular) > STILL_ANGULAR:
+                return False
+        return True
+
+    def pose(self, block: str) -> BlockPose:
+        """Pose of a block."""
+        position, quaternion = self.client.getBasePositionAndOrientation(self.bodies[block])
+        rotation = np.array(self.client.getMatrixFromQuaternion(quaternion)).reshape(3, 3)
+        return BlockPose(np.array(position), rotation)
+
+    def poses(self) -> dict[str, BlockPose]:
+        """Poses of all blocks."""
+        return {name: self.pose(name) for name in self.bodies}
+
+    def joints(self) -> NDArray[np.float64]:
+        """Measured arm joints [rad], shape (7,)."""
+        return np.array([state[0] for state in self.client.getJointStates(self.robot, ARM)])
+
+    def commanded(self) -> NDArray[np.float64]:
+        """The joint positions that the arm was last sent to [rad], shape (7,)."""
+        return self._target.copy()
+
+    def finger_gap(self) -> float:
+        """Distance between the fingers' pads [m]."""
+        return float(sum(state[0] for state in self.client.getJointStates(self.robot, FINGERS)))
+
+    def tool_position(self) -> NDArray[np.float64]:
+        """Measured position of the tool frame [m], shape (3,)."""
+        return np.array(self.client.getLinkState(self.robot, TOOL_LINK, computeForwardKinematics=True)[4])
+
+
+def connect(gui: bool) -> Any:
+    """A new PyBullet connection, without the library's greetings on the user's output."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    kept = [os.dup(1), os.dup(2)]
+    silence = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(silence, 1)
+        os.dup2(silence, 2)
+        import pybullet
+        from pybullet_utils.bullet_client import BulletClient
+
+        return BulletClient(connection_mode=pybullet.GUI if gui else pybullet.DIRECT)
+    finally:
+        ctypes.CDLL(None).fflush(None)
+        for number, copy in enumerate(kept, start=1):
+            os.dup2(copy, number)
+            os.close(copy)
+        os.close(silence)
+
+
+def quaternion_of(rotation: NDArray[np.float64]) -> list[float]:
+    """Quaternion x, y, z, w of a rotation about the vertical followed by nothing else, or of any rotation matrix."""
+    from scipy.spatial.transform import Rotation
+
+    return [float(value) for value in Rotation.from_matrix(rotation).as_quat()]

@@ -1,0 +1,111 @@
+import dataclasses
+
+import pytest
+
+from smash.execution.episode import episode_text
+from smash.execution.executor import OPEN, Executor, observed_instance
+from smash.execution.scene_file import default_scene
+from smash.execution.tabletop import Friction
+from smash.problem import Law, Pick, Place, PositionsGoal, make_instance
+from smash.problem.files import parse_json
+from tests.execution.episodes import buried_plan, buried_target, plan_of, swapped_pair, swapped_plan
+
+
+def run(instance, plan, *, scene=None, **options):
+    return Executor(instance, plan, scene or default_scene(), **options).run()
+
+
+def test_a_toppled_pile_gives_the_target_free_and_the_same_seed_the_same_episode():
+    episodes = [run(buried_target(), buried_plan(), policy=OPEN, seed=4) for _ in range(2)]
+    assert episodes[0].success
+    assert episodes[0].final.piles == {"g": ["a"]}
+    assert episodes[0].final.table == ["b", "c", "d"]
+    assert episodes[0].without_wall_times() == episodes[1].without_wall_times()
+
+
+def test_blocks_are_picked_from_where_they_fell_in_gap_tasks():
+    episode = run(swapped_pair(), swapped_plan(), policy=OPEN)
+    assert episode.success, episode.failure
+    assert episode.final.piles == {"s2": ["b", "a"]}
+    assert [row.gap for row in episode.actions] == [False, True, True, True, True]
+    assert all((row.times.online > 0) == row.gap for row in episode.actions)
+    assert all(row.times.execution > 0 for row in episode.actions)
+
+
+def test_slippery_fingers_are_a_named_failure_with_its_step():
+    slippery = dataclasses.replace(default_scene(), friction=Friction(0.45, 0.9, 0.01))
+    episode = run(buried_target(), buried_plan(), policy=OPEN, scene=slippery)
+    assert not episode.success
+    assert episode.failure.name == "slip"
+    assert episode.failure.action[0] in ("pick", "place")
+    assert episode.failure.step == len(episode.actions)
+
+
+def test_a_plan_of_nothing_is_judged_where_the_blocks_stand():
+    instance = make_instance(
+        name="done", blocks=["a"], stacks=["s"], start={"s": ["a"]}, goal=PositionsGoal({"a": ("s", 1)})
+    )
+    episode = run(instance, plan_of("done"))
+    assert episode.success
+    assert episode.actions == []
+
+
+def test_blocks_that_start_in_the_table_region_are_picked_from_there():
+    instance = make_instance(
+        name="strewn",
+        blocks=["a", "b"],
+        stacks=["table top", "s2"],
+        start={},
+        table=["b", "a"],
+        goal=PositionsGoal({"a": ("s2", 1)}),
+    )
+    episode = run(instance, plan_of("strewn", Pick("a", "table"), Place("a", "s2")))
+    assert episode.success, episode.failure
+    assert not any(row.gap for row in episode.actions)
+
+
+def test_a_failed_episode_is_planned_anew_from_what_is_observed():
+    asked = []
+
+    def replan(instance):
+        asked.append(instance)
+        return swapped_plan().actions[1:]
+
+    only_topple = plan_of("swapped", *swapped_plan().actions[:1])
+    episode = run(swapped_pair(), only_topple, replanner=replan)
+    assert episode.success, episode.failure
+    assert set(asked[0].table) == {"a", "b"}
+    assert episode.replans == 1
+    assert {row.origin for row in episode.actions} == {"plan", "replan"}
+
+
+def test_the_observed_instance_keeps_the_goal():
+    instance = swapped_pair()
+    state = list(Law(instance).states(swapped_plan().actions[:1]))[-1]
+    again = observed_instance(instance, state)
+    assert again.goal == instance.goal
+    assert again.table == ("a", "b")
+    assert again.start == {"s1": (), "s2": (), "s3": ()}
+
+
+def test_an_episode_is_written_as_json():
+    episode = run(swapped_pair(), plan_of("swapped"), policy=OPEN)
+    document = parse_json(episode_text(episode), "episode")
+    assert document["format"] == "smash-episode/1"
+    assert document["failure"]["name"] == "not at goal"
+    assert document["success"] is False
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("suite", ["single-9", "multi-4", "multi-6"])
+def test_committed_instances_succeed(suite):
+    from smash.experiments.replanning import replanner
+    from smash.planners.greedy import GreedyPlanner
+    from smash.planners.protocol import SolveOptions
+    from smash.problem.suites import read_suite
+
+    options = SolveOptions()
+    for instance in read_suite(suite)[:4]:
+        plan = GreedyPlanner().solve(instance, options, 5.0).as_plan(instance, "greedy", options)
+        episode = run(instance, plan, replanner=replanner("greedy", options, 5.0))
+        assert episode.success, (instance.name, episode.failure)
