@@ -60,7 +60,7 @@ def planner_figure(label: str, suite: str, cells: pd.DataFrame, matched: pd.Data
         _heatmap(axis, whole(part, "mean_cost"), scale, ACTION_COLOURS, lambda v: f"{v:.1f}", empty="no plan")
         axis.set_title(f"Mean actions where solved, {name}")
     ratios = matched["ratio_common"].dropna()
-    scale = mpl.colors.Normalize(min(1.0, ratios.min()), max(1.5, ratios.max())) if len(ratios) else percent
+    scale = mpl.colors.Normalize(min(1.0, ratios.min()), max(2.0, ratios.max())) if len(ratios) else percent
     _heatmap(axes[1][2], whole(matched, "ratio_common"), scale, RATIO_COLOURS, lambda v: f"{v:.2f}", empty="no pair")
     axes[1][2].set_title("Actions without / with topple\n(instances that both solved)")
     for axis in axes.flat:
@@ -72,6 +72,8 @@ def planner_figure(label: str, suite: str, cells: pd.DataFrame, matched: pd.Data
 
 def _runs(cells: pd.DataFrame) -> str:
     fewest, most = cells["runs"].min(), cells["runs"].max()
+    if most == 1:
+        return "1 run"
     return f"{most} runs" if fewest == most else f"{fewest} to {most} runs"
 
 

@@ -34,6 +34,7 @@ class SmashPlanner(BasePlanner):
 
     summary: ClassVar[str] = "the default: greedy, precedence graph, search over states and layered model combined"
     proves: ClassVar[bool] = True
+    budget_dependent: ClassVar[bool] = True  # its parts get shares of the budget
 
     def solve(
         self,
