@@ -25,6 +25,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "draw": ("smash.cli.draw", "draw a gadget, an instance, or a plan as moving pebbles"),
     "compare": ("smash.cli.compare", "planners on the same instances: coverage, times, costs, proofs, failures"),
     "scaling": ("smash.cli.scaling", "run planners over growing sizes, for curves of time against blocks"),
+    "frontier": ("smash.cli.frontier", "show what buffers buy: the exact cost against their number"),
     "sweep": ("smash.cli.sweep", "run an experiment file: planners, instances, budgets, buffers, variants"),
 }
 """Subcommand -> (module that holds a click command called `command`, one line of help)."""
