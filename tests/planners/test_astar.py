@@ -74,7 +74,7 @@ def test_six_blocks_without_buffers_are_proven(topple):
 
 @pytest.mark.slow
 def test_compiled_and_interpreted_search_expand_the_same_nodes(monkeypatch):
-    monkeypatch.setattr(driver, "SHARE", {False: 1, True: 1})
+    monkeypatch.setattr(driver, "WORK", {False: 1, True: 1})
     for instance in generate("multi", 8, 0, 6, 3):
         counts = []
         for nodes in (1_000_000, 1):
@@ -102,6 +102,15 @@ def test_spent_memory_ends_the_search_with_the_bound(monkeypatch):
     assert result.details["ended"] == "memory"
     assert result.status == "feasible"
     assert result.lower_bound < result.cost
+
+
+@pytest.mark.parametrize("blocks", [40, 200])
+def test_the_budget_is_kept_where_one_expansion_takes_long(blocks):
+    instance = next(generate("multi", blocks, 12, 1, 0))
+    started = perf_counter()
+    result = AStarPlanner().solve(instance, SolveOptions(topple=False), 1)
+    assert perf_counter() - started < 1.5
+    assert result.lower_bound >= 2 * blocks - 20
 
 
 def test_three_hundred_blocks_are_left_to_others_with_the_greedy_plan():

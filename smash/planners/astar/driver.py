@@ -22,8 +22,11 @@ MOST_INTERPRETED = 100_000
 FIRST_NODES = 1 << 16
 MOST_BUCKETS = 1 << 24
 """Beyond this the plan known is so far from the bound that no search can close the gap."""
-SHARE = {False: 8, True: 2048}
-"""Nodes expanded between two looks at the clock, interpreted and compiled."""
+INTERPRETED_BLOCKS = 30
+"""With more blocks one expansion takes too long to be interpreted."""
+WORK = {False: 3_000, True: 200_000}
+"""What a share of expansions is worth, in blocks squared times locations: some milliseconds between two looks at
+the clock, interpreted and compiled."""
 
 
 class StateSearch:
@@ -46,6 +49,7 @@ class StateSearch:
         self.lower_bound = 0
         self.ended: str | None = None
         self.expanded = 0
+        self._interpreted = problem.blocks <= INTERPRETED_BLOCKS
         self._memory = free_memory() if memory is None else memory
         setting = make_setting(problem, options)
         if setting is None:
@@ -67,8 +71,8 @@ class StateSearch:
         Without `may_compile` it also pauses where the interpreted search has filled its store.
         """
         while self.ended is None:
-            if may_compile and not self._engine.compiled and _Compiler.started():
-                self._compile(perf_counter())
+            if not self._ready(deadline, may_compile):
+                return None
             engine = self._engine
             outcome = engine.expand()
             self.lower_bound = max(self.lower_bound, min(engine.counter(FLOOR), engine.counter(UPPER)))
@@ -93,6 +97,14 @@ class StateSearch:
         if self.lower_bound >= counters[UPPER]:
             self.lower_bound = int(counters[UPPER])
             self.ended = "proven"
+
+    def _ready(self, deadline: float, may_compile: bool) -> bool:
+        """Take the compiled search where it is there, or where the problem is too large to be searched without."""
+        if self._engine.compiled:
+            return True
+        if may_compile and (_Compiler.started() or not self._interpreted):
+            self._compile(perf_counter() if self._interpreted else deadline)
+        return self._interpreted or self._engine.compiled
 
     def _grow(self, deadline: float) -> bool:
         """Make room, by compiling first if that is soon done; False where memory ends."""
@@ -137,6 +149,7 @@ class _Engine:
         self.compiled = compiled
         self.cells = filled(setting.cells, compiled)
         self.reported = -1
+        self.share = max(1, WORK[compiled] // max(1, self.task.blocks**2 * len(setting.class_of)))
         self.store: Store
 
     def first_bound(self) -> int:
@@ -151,7 +164,7 @@ class _Engine:
 
     def expand(self) -> int:
         """Expand a share of nodes."""
-        return self.code.expand_some(self.task, self.cells, self.store, SHARE[self.compiled])
+        return self.code.expand_some(self.task, self.cells, self.store, self.share)
 
     def counter(self, which: int) -> int:
         """Return a counter of the store."""
