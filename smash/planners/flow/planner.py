@@ -16,8 +16,8 @@ from smash.problem.rules import Law
 if TYPE_CHECKING:
     from smash.planners.milp import Milp
 
-MARGIN = 0.02
-"""Share of the budget that is left for reading the last solution."""
+MARGIN = 0.04
+"""Share of the budget that is left for HiGHS to notice its time limit and for reading the last solution."""
 WARM_SHARE = 0.25
 """Share of the budget that the planner of a warm start may take."""
 
@@ -53,7 +53,7 @@ class FlowPlanner(BasePlanner):
             log.offer((), "milp")
             return log.result(lower_bound=0, bound_origin="start")
         if why_infeasible(instance, options) is not None:
-            return log.result(infeasible=True, bound_origin="reachability")
+            return log.result(infeasible=True, bound_origin="feasibility")
         if options.warm_start is not None:
             self._warm(options.warm_start, instance, options, log, WARM_SHARE * budget)
         from smash.planners.flow.search import FlowSearch, TooLarge

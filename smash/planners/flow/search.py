@@ -71,10 +71,14 @@ class FlowSearch:
         return self.log.cost is not None and self.lower >= self.log.cost
 
     def first_horizon(self) -> int:
-        """Return the horizon that plans are looked for with: the longest way of a pebble, a step per move, a topple."""
+        """Return the horizon that plans are looked for with.
+
+        It is the longest way of a pebble, a step per move, a topple, and a third of the moves more: with less slack
+        the solver's heuristics often find no first plan, with more the models grow.
+        """
         shortest = max(reach.shortest for reach in self.reaches.values())
         moves = self.bound.moves or len(self.scope.moving)
-        horizon = max(1, shortest + moves + (2 if self.options.topple else 0))
+        horizon = max(1, shortest + moves + moves // 3 + (2 if self.options.topple else 0))
         return horizon if self.log.best is None else max(horizon, self._steps_of_best())
 
     def run(self) -> None:
