@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
-.PHONY: help test test-slow lint suites ablation ablation-full scaling
+.PHONY: help test test-slow lint suites ablation ablation-full compare compare-full scaling
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -42,3 +42,12 @@ ablation-full: $(STAMP) ## the paper's whole grid: 9 blocks, 20 instances, buffe
 scaling: $(STAMP) ## time over 4 to 1,000 blocks, per planner: curves and exponents (hours; it can be resumed)
 	$(BIN)/smash scaling --out runs/scaling
 	$(BIN)/python -m analysis.scaling runs/scaling
+
+compare: $(STAMP) ## all planners, gadget and PDDL, on a stated subset of the committed sets (at most 30 minutes on 2 cores)
+	$(BIN)/python -m smash sweep experiments/compare.toml --out runs/compare
+	$(BIN)/python -m analysis.comparison runs/compare
+
+compare-full: $(STAMP) ## all planners on all of the committed sets (a day or more; says how many hours first)
+	$(BIN)/python -m smash sweep experiments/compare-full.toml --out runs/compare-full --dry-run
+	$(BIN)/python -m smash sweep experiments/compare-full.toml --out runs/compare-full
+	$(BIN)/python -m analysis.comparison runs/compare-full

@@ -20,7 +20,8 @@ from baselines.steps import parse_step
 
 PLAN_FILE = "plan"
 _PLAN_WRITTEN = "Plan cost:"
-_BOUND = re.compile(r"\] (?:f = (\d+)|BOUND: (\d+) <)")
+_ASTAR_BOUND = re.compile(r"\] f = (\d+)")
+_SYMK_BOUND = re.compile(r"\] BOUND: (\d+) < (\d+)")
 _SIZES = re.compile(r"^Translator (variables|facts|operators|task size): (\d+)")
 _SEARCH_CLOCK = re.compile(r"^\[t=([\d.]+)s")
 _EXHAUSTED = "Completely explored state space"
@@ -83,7 +84,7 @@ class DownwardPlanner(EnginePlanner):
             for line in search.lines():
                 if _PLAN_WRITTEN in line:
                     plans.read_new(line)
-                bound = _bound_in(line) if self.configuration.admissible else None
+                bound = bound_in(line) if self.configuration.admissible else None
                 exhausted = exhausted or _EXHAUSTED in line or bound == _INFINITE
                 if bound is not None and bound != _INFINITE:
                     run.raise_bound(bound)
@@ -124,9 +125,14 @@ class _PlanFiles:
                 self._times.append(float(clock[1]))
 
 
-def _bound_in(line: str) -> int | None:
-    bound = _BOUND.search(line)
-    return int(bound[1] or bound[2]) if bound else None
+def bound_in(line: str) -> int | None:
+    """Return the lower bound that a line of an admissible search tells, or None.
+
+    SymK's two numbers are the cost that any further plan has at least and the cost of its best plan; once it is
+    done, the first is above the second.
+    """
+    bounds = _ASTAR_BOUND.search(line) or _SYMK_BOUND.search(line)
+    return min(map(int, bounds.groups())) if bounds else None
 
 
 def _plan_number(file: Path) -> int:

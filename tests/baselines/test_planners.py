@@ -10,6 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from baselines import planners
+from baselines.downward import bound_in
 from baselines.planners import Aries, Enhsp, FdLama, FdLamaChain, FdLamaFirst, FdOpt, FdOptIpdb, SymkOpt
 from smash.planners.protocol import SolveOptions
 from smash.planners.registry import get_planner
@@ -119,6 +120,19 @@ def test_a_lower_bound_stands_when_the_budget_ends_first():
     assert result.bound_origin == "fd-opt"
 
 
+@pytest.mark.parametrize(
+    ("line", "bound"),
+    [
+        ("[t=0.063495s, 11212 KB] f = 9, 7 evaluated, 1 expanded", 9),
+        ("[t=27.7s, 940780 KB] BOUND: 19 < 2147483647 [0/1 plans], dir: BW, reconstruction time: 0.0s", 19),
+        ("[t=3.085028s, 602332 KB] BOUND: 37 < 36 [1/1 plans], dir: BW, reconstruction time: 0.042097s", 36),
+        ("[t=0.063495s, 11212 KB] New best heuristic value for cpdbs: 8", None),
+    ],
+)
+def test_what_a_search_says_of_its_bound_is_never_above_its_plan(line, bound):
+    assert bound_in(line) == bound
+
+
 def test_a_memory_limit_is_a_crash_with_a_name():
     with pytest.raises(PlannerOutOfMemory, match="memory"):
         solve(FdOpt(memory=30 << 20), read_instance(suite_files("multi-9")[0]))
@@ -218,6 +232,7 @@ def assert_optimal(planner, instance, options, budget=30.0):
     best = optimal_cost(instance, options)
     assert not result.details.get("refused")
     assert (result.status, result.cost) == (("infeasible", None) if best is None else ("optimal", best))
+    assert best is None or result.lower_bound == best
 
 
 @settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.too_slow])
