@@ -10,6 +10,7 @@ from pathlib import Path
 import pandas as pd
 
 from analysis.cells import matched_cells, variant_cells
+from analysis.conditions import conditions
 from analysis.findings import findings
 from analysis.heatmaps import planner_figure
 from analysis.readings import cutoff_check, readings
@@ -33,7 +34,7 @@ def make(results: Path, out: Path) -> list[Path]:
     for file, frame in zip(files, (cells, matched, check, table), strict=False):
         frame.to_csv(file, index=False)
     files[4].write_text(markdown(table), encoding="utf-8")
-    files[5].write_text(findings(cells, matched, check), encoding="utf-8")
+    files[5].write_text(findings(cells, matched, check) + conditions(records), encoding="utf-8")
     return files + _pictures(cells, matched, out)
 
 

@@ -13,6 +13,7 @@ from typing import Any
 
 import pandas as pd
 
+from analysis.conditions import conditions
 from analysis.curves import anytime_figure, coverage_figure
 from analysis.records import NoRecords, read_records, runs_table
 from analysis.tables import markdown, mean_std, median_iqr, share
@@ -143,7 +144,12 @@ def make(results: Path, out: Path) -> list[Path]:
         part.to_csv(files[-1], index=False)
     page = ["# Comparison", "", markdown(table), "## How the runs ended", "", markdown(outcomes)]
     page += ["## Failures and their reasons", "", markdown(failures) if len(failures) else "None.\n"]
-    page += ["## Contradictions between planners", "", "\n".join(f"- {line}" for line in wrong) or "None.", ""]
+    page += [
+        "## Contradictions between planners",
+        "",
+        "\n".join(f"- {line}" for line in wrong) or "None.",
+        conditions(records),
+    ]
     files.append(out / "comparison.md")
     files[-1].write_text("\n".join(page), encoding="utf-8")
     for name, draw in (("anytime", anytime_figure), ("coverage", coverage_figure)):
