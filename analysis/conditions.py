@@ -27,11 +27,11 @@ def conditions(records: list[dict[str, Any]]) -> str:
 
 
 def _commits(records: list[dict[str, Any]]) -> str:
-    commits = Counter(
-        f"{(commit.get('hash') or 'unknown')[:10]}{' with changed files' if commit.get('dirty') else ''}"
-        for record in records
-        if (commit := record.get("commit") or {}) is not None
-    )
+    commits: Counter[str] = Counter()
+    for record in records:
+        commit = record.get("commit") or {}
+        changed = " with changed files" if commit.get("dirty") else ""
+        commits[(commit.get("hash") or "unknown")[:10] + changed] += 1
     return "code at " + ", ".join(f"{name} ({count} runs)" for name, count in commits.most_common())
 
 
