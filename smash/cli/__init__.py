@@ -5,6 +5,8 @@ from __future__ import annotations
 import importlib
 import os
 import sys
+import traceback
+import warnings
 from typing import NoReturn
 
 import click
@@ -82,6 +84,8 @@ def main() -> NoReturn:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore")  # a library's words to programmers; `python -W default` shows them
     try:
         code = smash.main(standalone_mode=False, prog_name="smash")
         sys.stdout.flush()
@@ -101,4 +105,10 @@ def main() -> NoReturn:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(141)
+    except OSError as error:
+        fail(f"{error.filename}: {error.strerror}" if error.filename is not None else str(error), 2)
+    except Exception as error:
+        last = traceback.extract_tb(error.__traceback__)[-1]
+        place = f"{os.path.basename(last.filename)}:{last.lineno}"
+        fail(f"defect: {type(error).__name__}: {error} ({place})", 7)
     sys.exit(code if isinstance(code, int) else 0)

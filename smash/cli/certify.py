@@ -26,7 +26,7 @@ from smash.problem.files import read_instance, read_plan, write_text
 )
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), required=True, help="Certificate to write.")
 def command(instance: Path, plan: Path, budget: float, out: Path) -> None:
-    r"""Write a certificate of a lower bound on all plans with PLAN's options (topple or not, cap).
+    """Write a certificate of a lower bound on all plans with PLAN's options (topple or not, cap).
 
     The certificate lists cycles of precedence and the arithmetic of the bound; `smash verify` follows it
     without a solver. It counts no buffers: where few of them make plans dearer, it stays below.

@@ -44,7 +44,7 @@ def command(
     dask: str | None,
     out: Path | None,
 ) -> None:
-    r"""Run every planner on every instance of each SUITE (a committed set or a directory) and compare.
+    """Run every planner on every instance of each SUITE (a committed set or a directory) and compare.
 
     The records go to OUT/runs.jsonl, tables and curves to OUT/comparison; stopped, it goes on where it was.
 

@@ -30,7 +30,7 @@ from smash.problem.model import PlanOptions
     help="Directory for domain.pddl and problem.pddl; made where it is missing.",
 )
 def command(instance: Path, encoding: str, no_topple: bool, max_topple: int | None, out: Path) -> None:
-    r"""Write INSTANCE as domain.pddl and problem.pddl.
+    """Write INSTANCE as domain.pddl and problem.pddl.
 
     \b
     Examples:

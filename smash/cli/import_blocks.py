@@ -14,7 +14,7 @@ from smash.problem.files import write_instance
 @click.argument("problem", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), required=True, help="Instance file to write.")
 def command(problem: Path, out: Path) -> None:
-    r"""Turn a blocks-world PROBLEM in PDDL (the IPC's, typed or not) into an instance.
+    """Turn a blocks-world PROBLEM in PDDL (the IPC's, typed or not) into an instance.
 
     As many locations as blocks, no buffer, an `on` goal: without topple its costs are the classical plan lengths.
 

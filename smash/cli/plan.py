@@ -61,7 +61,7 @@ def command(
     seed: int,
     out: Path | None,
 ) -> None:
-    r"""Plan INSTANCE and print the plan as JSON, or write it with --out.
+    """Plan INSTANCE and print the plan as JSON, or write it with --out.
 
     The planner runs in processes of its own. Ctrl-C ends them and keeps the best plan found so far.
 

@@ -26,7 +26,7 @@ from smash.problem.errors import SmashError, Unsupported
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Default: runs/NAME-OF-EXPERIMENT.")
 @click.option("--dry-run", is_flag=True, help="Check the file, say how many runs it means and how long at most.")
 def command(experiment: Path, jobs: int | None, dask: str | None, out: Path | None, dry_run: bool) -> None:
-    r"""Do every run of EXPERIMENT.toml and record each as one line of OUT/runs.jsonl.
+    """Do every run of EXPERIMENT.toml and record each as one line of OUT/runs.jsonl.
 
     It may be stopped or killed at any moment: start it again and it does what is left.
 

@@ -17,7 +17,7 @@ from smash.problem.plan import check_plan
 @click.argument("plan", type=click.Path(path_type=Path))
 @click.argument("certificate", type=click.Path(path_type=Path))
 def command(instance: Path, plan: Path, certificate: Path) -> None:
-    r"""Check PLAN by the law and CERTIFICATE from the ground up, without a solver.
+    """Check PLAN by the law and CERTIFICATE from the ground up, without a solver.
 
     Exit 0 where the certificate proves the plan's lower bound (an optimal plan's cost), 3 where it does not.
 

@@ -57,6 +57,8 @@ def _solve(job: Job, voice: _Voice) -> None:
         voice.say(kind="solving")
         voice.started = perf_counter()
         result = planner.solve(job.instance, job.options, job.budget, voice.incumbent)
+    except UnknownPlanner as error:  # the one that is to warm-start it
+        return voice.say(kind="failed", outcome="malformed", reason=str(error))
     except Unsupported as error:
         return voice.say(kind="failed", outcome="unsupported", reason=str(error))
     seconds = perf_counter() - voice.started

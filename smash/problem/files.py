@@ -342,7 +342,8 @@ class _Checker:
 
     def _each_block_once(self, part: str, placed: list[str]) -> None:
         self._once(part, placed)
-        missing = [block for block in self.instance.blocks if block not in set(placed)]
+        known = set(placed)
+        missing = [block for block in self.instance.blocks if block not in known]
         if missing:
             self.refuse(part, f"block {missing[0]!r} is nowhere; every block stands exactly once")
 

@@ -5,6 +5,10 @@ import subprocess
 import sys
 
 import pytest
+from click.testing import CliRunner
+
+from smash.cli import COMMANDS, main
+from smash.cli import smash as command_group
 
 
 def smash(*arguments, cwd=None):
@@ -26,6 +30,7 @@ def smash(*arguments, cwd=None):
         ["validate", "missing.json", "missing.json"],
         ["generate", "multi", "--blocks", "2", "--out", "y"],
         ["generate", "circle", "--blocks", "5", "--out", "y"],
+        ["generate", "multi", "--blocks", "5", "--out", "/proc/no/such"],
         ["frobnicate"],
     ],
 )
@@ -99,3 +104,27 @@ def test_help_names_every_subcommand_and_the_exit_codes():
     shown = smash("--help").stdout
     for word in ("generate", "plan", "validate", "planners", "Exit codes"):
         assert word in shown
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_shows_examples_line_by_line(name):
+    assert "\\b" not in CliRunner().invoke(command_group, [name, "--help"]).output
+
+
+def test_a_defect_is_one_line_too(monkeypatch, capsys):
+    def broken(**_):
+        raise ZeroDivisionError("no such thing")
+
+    monkeypatch.setattr(command_group, "main", broken)
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 7
+    assert capsys.readouterr().err.startswith("smash: defect: ZeroDivisionError: no such thing (test_doors.py:")
+
+
+def test_any_json_string_is_a_name_in_every_file_written(filed):
+    folder, instance, plan = filed
+    judge((folder, instance | {"name": "\ud800"}, plan), instance="\ud800")
+    files = [folder / name for name in ("i.json", "p.json", "proof.json")]
+    assert smash("certify", *files[:2], "--out", files[2]).returncode == 0
+    assert smash("verify", *files).returncode == 0

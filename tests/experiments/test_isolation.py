@@ -14,6 +14,7 @@ import pytest
 from smash.experiments.isolation import run_isolated
 from smash.experiments.job import Job
 from smash.planners.protocol import SolveOptions
+from smash.problem.errors import SmashError
 from smash.problem.files import read_instance
 
 pytestmark = pytest.mark.usefixtures("third_party")
@@ -184,3 +185,9 @@ def test_an_interrupted_plan_command_writes_what_was_found(alive, tower_file, tm
     assert said.count("\n") == 1
     assert '"cost": 5' in out.read_text()
     assert not alive()
+
+
+def test_an_unknown_warm_start_is_a_wrong_flag(tower_file):
+    job = Job("smash-layered", read_instance(tower_file), SolveOptions(warm_start="nobody"), 5.0)
+    with pytest.raises(SmashError, match="no planner is called 'nobody'"):
+        run_isolated(job)

@@ -55,3 +55,14 @@ def test_a_warm_start_is_the_first_incumbent():
     result = solve(instance, SolveOptions(), warm_start="greedy")
     assert result.incumbents[0].origin == "greedy"
     assert result.status == "optimal"
+
+
+@pytest.mark.parametrize("budget", [1e-6, 1e-3])
+def test_hardly_any_time_is_no_crash(budget):
+    result = solve(read_suite("multi-4")[0], SolveOptions(), budget=budget)
+    assert result.lower_bound is None or result.lower_bound >= 0
+
+
+def test_a_warm_start_by_itself_starts_cold():
+    result = solve(read_suite("multi-4")[0], SolveOptions(), warm_start="smash-layered")
+    assert result.status == "optimal"

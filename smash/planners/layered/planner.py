@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from math import ceil, isfinite
 from time import perf_counter
@@ -113,7 +114,8 @@ class _Solve:
         from smash.planners.registry import get_planner
 
         seconds = max(0.05, (self.deadline - perf_counter()) / 10)
-        found = get_planner(name).solve(self.instance, self.options, seconds)
+        options = replace(self.options, warm_start=None, horizon=None)
+        found = get_planner(name).solve(self.instance, options, seconds)
         if found.actions is not None:
             self.log.offer(found.actions, name)
 
