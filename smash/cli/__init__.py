@@ -79,13 +79,25 @@ def fail(message: str, code: int) -> NoReturn:
     sys.exit(code)
 
 
-def main() -> NoReturn:
-    """Run the command: errors are one line on stderr and an exit code, never a traceback."""
+def _prepare_streams() -> None:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
     if not sys.warnoptions:
         warnings.simplefilter("ignore")  # a library's words to programmers; `python -W default` shows them
+
+
+def _fail_unforeseen(error: Exception) -> NoReturn:
+    """End with one line on what no command foresaw: a file that the system refuses, or a defect."""
+    if isinstance(error, OSError):
+        fail(f"{error.filename}: {error.strerror}" if error.filename is not None else str(error), 2)
+    last = traceback.extract_tb(error.__traceback__)[-1]
+    fail(f"defect: {type(error).__name__}: {error} ({os.path.basename(last.filename)}:{last.lineno})", 7)
+
+
+def main() -> NoReturn:
+    """Run the command: errors are one line on stderr and an exit code, never a traceback."""
+    _prepare_streams()
     try:
         code = smash.main(standalone_mode=False, prog_name="smash")
         sys.stdout.flush()
@@ -105,10 +117,6 @@ def main() -> NoReturn:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(141)
-    except OSError as error:
-        fail(f"{error.filename}: {error.strerror}" if error.filename is not None else str(error), 2)
     except Exception as error:
-        last = traceback.extract_tb(error.__traceback__)[-1]
-        place = f"{os.path.basename(last.filename)}:{last.lineno}"
-        fail(f"defect: {type(error).__name__}: {error} ({place})", 7)
+        _fail_unforeseen(error)
     sys.exit(code if isinstance(code, int) else 0)

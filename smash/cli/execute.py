@@ -47,7 +47,7 @@ def command(
     gui: bool,
     out: Path | None,
 ) -> None:
-    r"""Carry PLAN out with the Panda in PyBullet and print the episode as JSON; exit 5 where the execution failed.
+    """Carry PLAN out with the Panda in PyBullet and print the episode as JSON; exit 5 where the execution failed.
 
     \b
     Examples:

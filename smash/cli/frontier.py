@@ -39,7 +39,7 @@ def command(
     instances: int | None,
     out: Path | None,
 ) -> None:
-    r"""Show the exact cost against the number of buffers, with and without topple, and the fewest for each cost.
+    """Show the exact cost against the number of buffers, with and without topple, and the fewest for each cost.
 
     \b
     Examples:

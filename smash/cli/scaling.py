@@ -28,7 +28,7 @@ from smash.experiments.scaling import LARGEST, SIZES, scaling_experiment, write_
 def command(
     planners: tuple[str, ...], largest: int, count: int, budget: float, jobs: int, seed: int, out: Path
 ) -> None:
-    r"""Run planners on random instances of 4 to 1,000 blocks, with and without topple, and record every run.
+    """Run planners on random instances of 4 to 1,000 blocks, with and without topple, and record every run.
 
     Each size has no buffer, the paper's 12, and as many as blocks. Curves and growth exponents are made from the
     records by `python -m analysis.scaling OUT`; `make scaling` does both. Start it again and it does what is left.

@@ -1,6 +1,7 @@
 """smash-flow: equal to exhaustive search, honest about horizons, every goal kind and start."""
 
 from pathlib import Path
+from time import perf_counter
 
 import pytest
 from hypothesis import given, settings
@@ -138,6 +139,20 @@ def test_what_is_too_large_is_said_at_once_and_is_not_infeasible():
     result = solve(instance, budget=5.0)
     assert (result.status, result.incumbents) == ("unknown", ())
     assert "at most" in result.details["stopped"] or "edges" in result.details["stopped"]
+
+
+@pytest.mark.parametrize(("blocks", "bound"), [(60, 120), (450, None)])
+def test_what_cannot_be_built_in_the_budget_is_not_begun(blocks, bound):
+    instance = generate_one(blocks)
+    began = perf_counter()
+    result = FlowPlanner().solve(instance, SolveOptions(), budget=1.5)
+    assert perf_counter() - began < 2
+    assert (result.status, result.lower_bound) == ("unknown", bound)
+    assert "stopped" in result.details
+
+
+def generate_one(blocks):
+    return next(generate("multi", blocks, buffers=2, count=1, seed=5))
 
 
 @settings(max_examples=60, deadline=None)

@@ -55,3 +55,10 @@ def test_a_thousand_blocks_get_their_first_plan_within_seconds(topple):
         result = GreedyPlanner().solve(cut, SolveOptions(topple), 0.1)
         assert result.actions is not None
         assert perf_counter() - started < 20
+
+
+def test_no_pass_is_begun_that_would_end_after_the_budget():
+    instance = next(iter(generate("multi", 1000, buffers=2, count=1, seed=5)))
+    began = perf_counter()
+    first = next(iter(GreedyPlanner().solve(instance, SolveOptions(topple=False), 1e-9).incumbents))
+    assert first.seconds <= perf_counter() - began < 3 * first.seconds + 0.5

@@ -60,9 +60,12 @@ class FlowPlanner(BasePlanner):
 
         try:
             search = FlowSearch(instance, options, log, deadline)
-            search.run()
         except TooLarge as error:
             return log.result(details={"stopped": str(error)})
+        try:
+            search.run()
+        except TooLarge as error:
+            search.details["stopped"] = str(error)
         if log.refusals:
             search.details["refusals"] = list(log.refusals)
         return log.result(lower_bound=search.lower, bound_origin=search.origin, details=search.details)

@@ -30,6 +30,8 @@ ARCS_PER_SECOND = 100_000
 """Arcs that are at least built in a second; a model that would take half the time left is not begun."""
 MOST_EDGES = 4_000_000
 """Edges of the gadget times pebbles beyond which the gadget itself is not walked through."""
+EDGES_PER_SECOND = 300_000
+"""Such edges that are at least looked at in a second; a gadget that would take half the time left is not begun."""
 
 NO_PROBING = 1 << 15
 """HiGHS' presolve without probing, which costs more than it brings here: seconds before the first incumbent."""
@@ -58,7 +60,7 @@ class FlowSearch:
     details: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        check_gadget_size(self.instance)
+        check_gadget_size(self.instance, self.deadline - perf_counter())
         self.scope = scope_of(self.instance, self.options)
         self.bound = step_bound(self.scope, self.options)
         self.reaches = reaches_of(self.scope)
@@ -175,15 +177,15 @@ class FlowSearch:
             self.lower, self.origin = proves, "milp"
 
 
-def check_gadget_size(instance: Instance) -> None:
-    """Refuse a gadget that is too large to walk through.
+def check_gadget_size(instance: Instance, seconds: float = math.inf) -> None:
+    """Refuse a gadget that is too large to walk through, or that would take half of the `seconds` left.
 
     Raises:
         TooLarge: naming its size.
     """
     blocks, locations = len(instance.blocks), len(instance.stacks) + min(len(instance.buffers), len(instance.blocks))
     edges = blocks * (2 * locations * blocks + locations * locations + blocks * locations)
-    if edges > MOST_EDGES:
+    if edges > min(MOST_EDGES, EDGES_PER_SECOND * seconds / 2):
         raise TooLarge(f"the gadget of {blocks} blocks and {locations} locations has {edges:,} edges to look at")
 
 
