@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
-.PHONY: help test test-slow lint suites ablation ablation-full compare compare-full scaling
+.PHONY: help test test-slow lint suites ablation ablation-full compare compare-full scaling tables tables-full topple-map
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -38,6 +38,20 @@ ablation-full: $(STAMP) ## the paper's whole grid: 9 blocks, 20 instances, buffe
 	$(BIN)/python -m smash sweep experiments/ablation-full.toml --out runs/ablation-full --dry-run
 	$(BIN)/python -m smash sweep experiments/ablation-full.toml --out runs/ablation-full
 	$(BIN)/python -m analysis.ablation runs/ablation-full
+
+tables: $(STAMP) ## the paper's Tables I and II in simulation, a stated subset (at most 30 minutes on 2 cores)
+	$(BIN)/python -m smash sweep experiments/tables-subset.toml --out runs/tables-subset
+	$(BIN)/python -m smash episodes runs/tables-subset --policy replan --policy open --jobs 2
+	$(BIN)/python -m analysis.execution_tables runs/tables-subset
+
+tables-full: $(STAMP) ## both tables whole: 20 instances a setting, 3 physics seeds (hours, said first; it can be resumed)
+	$(BIN)/python -m smash sweep experiments/tables-full.toml --out runs/tables-full --dry-run
+	$(BIN)/python -m smash sweep experiments/tables-full.toml --out runs/tables-full
+	$(BIN)/python -m smash episodes runs/tables-full --policy replan --policy open --seeds 3 --jobs 2
+	$(BIN)/python -m analysis.execution_tables runs/tables-full
+
+topple-map: $(STAMP) ## where toppled blocks land, per cut height and number (minutes)
+	$(BIN)/python -m smash topple-map --out runs/topple-map
 
 scaling: $(STAMP) ## time over 4 to 1,000 blocks, per planner: curves and exponents (hours; it can be resumed)
 	$(BIN)/smash scaling --out runs/scaling

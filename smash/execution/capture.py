@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from smash.execution.episode import Episode
 from smash.execution.executor import Executor
 from smash.execution.recording import Recording
 from smash.execution.tabletop import Tabletop
+from smash.execution.trajectory_file import write_trajectory
 from smash.execution.world import Frame
 from smash.problem.errors import MalformedFile
-from smash.problem.files import write_text
+
+Sample = tuple[float, NDArray[np.float64]]
 
 TRAJECTORY_INTERVAL = 0.01
 """Time between two rows of an exported trajectory [s]."""
@@ -53,7 +56,7 @@ class Capture:
         """Write what was asked for."""
         tabletop = executor.tabletop
         if self.trajectory is not None:
-            write_trajectory(self.trajectory, executor)
+            write_trajectory(self.trajectory, _thinned(executor.world.recorded))
         if self.replay is not None:
             from smash.execution.replay import write_replay
 
@@ -79,14 +82,13 @@ class Capture:
         write_stills(path, self.recording, tabletop, captions)
 
 
-def write_trajectory(path: Path, executor: Executor) -> None:
-    """Write the commanded joint positions as CSV: time [s], joint1 to joint7 [rad]."""
-    lines, due = ["time," + ",".join(f"joint{number}" for number in range(1, 8))], -1.0
-    for moment, position in executor.world.recorded:
+def _thinned(samples: Iterable[Sample]) -> Iterator[Sample]:
+    """Leave out samples that follow another one too closely."""
+    due = float("-inf")
+    for moment, position in samples:
         if moment >= due:
-            lines.append(f"{moment:.4f}," + ",".join(f"{value:.6f}" for value in np.asarray(position)))
+            yield moment, position
             due = moment + TRAJECTORY_INTERVAL - 1e-6
-    write_text(path, "\n".join(lines) + "\n")
 
 
 def _require_directories(paths: Iterable[Path]) -> None:

@@ -113,6 +113,7 @@ class Executor:
 
     def run(self) -> Episode:
         """Carry out the plan and judge the result."""
+        self.steps.warm_up()
         generator = np.random.default_rng(self.seed)
         poses = starting_poses(self.instance, self.slots, self.tabletop, generator)
         with World(self.tabletop, poses, READY, gui=self._gui, on_frame=self._on_frame) as world:
@@ -215,17 +216,17 @@ class Executor:
                 row.times.online += perf_counter() - begun
         match task.action:
             case Pick(block, _):
-                self._run(segments)
+                carry_out(self.world, segments)
                 self._require_grasp(block)
                 self.hand = block
             case Place(block, target):
-                self._run(segments)
+                carry_out(self.world, segments)
                 self.hand = None
                 self.world.wait(PAUSE)
                 if self._observe().piles[target][-1:] != [block]:
                     raise Slip(f"block {block!r} does not stand on {target!r} after it was let go")
             case Topple():
-                self._run(segments)
+                carry_out(self.world, segments)
                 self.world.settle()
 
     def _plan_online(self, task: Task, state: State) -> list[Segment]:
@@ -253,19 +254,11 @@ class Executor:
             return True
         poses = self.world.poses()
         if isinstance(task.action, Pick) and moves:
-            tool = panda().forward(moves[1].path.end).position
+            tool = panda().forward(moves[-2].path.end).position
             if hypot(*(poses[task.action.block].position - tool)[:2]) > MOVED:
                 return False
         scene = self.steps.scene(poses)
         return all(move.free(scene, SCENE_ALLOWANCE) for move in moves)
-
-    def _run(self, segments: Sequence[Segment]) -> None:
-        for segment in segments:
-            if isinstance(segment, Grip):
-                self.world.grip(segment.opening, segment.seconds)
-            else:
-                self.world.follow(segment.trajectory, segment.opening)
-                self.world.wait(PAUSE)
 
     def _require_grasp(self, block: str) -> None:
         """Raise `Slip`, the hand opened, unless the block is between the fingers."""
@@ -319,7 +312,7 @@ class Executor:
         return False
 
     def _clear(self, action: Action) -> None:
-        """Move one loose block out of the way of an action that could not be done."""
+        """Move what is in the way of an action that could not be done: a loose block, or a pile that hides one."""
         match action:
             case Pick(block, _):
                 x, y = (float(value) for value in self.world.pose(block).position[:2])
@@ -327,18 +320,34 @@ class Executor:
             case Place(_, location) | Topple(location, _):
                 x, y = self.slots[location].x, self.slots[location].y
                 spared = set()
-        poses = self.world.poses()
-        loose = [name for name in self._observe().table if name not in spared and poses[name].distance(x, y) < NEAR]
-        for name in sorted(
-            loose, key=lambda name: (-round(float(poses[name].position[2]), 2), poses[name].distance(x, y))
-        ):
-            try:
-                self._perform(Task(Pick(name, TABLE), None), "recovery", self._observe(), ())
-            except ExecutionFailure:
-                if self.hand is None:
-                    continue
-            self._put_down()
-            return
+        poses, state = self.world.poses(), self._observe()
+        loose = [name for name in state.table if name not in spared and poses[name].distance(x, y) < NEAR]
+        for name in sorted(loose, key=lambda name: (-round(poses[name].position[2], 2), poses[name].distance(x, y))):
+            if self._set_aside(name, TABLE):
+                return
+        if isinstance(action, Pick) and action.source == TABLE:
+            self._uncover(action.block, x, y)
+
+    def _uncover(self, block: str, x: float, y: float) -> None:
+        """Take down the pile beside a loose block, one by one, until the block itself can be set aside."""
+        near = [name for name, slot in self.slots.items() if slot.distance(x, y) < NEAR]
+        for location in sorted(near, key=lambda name: self.slots[name].distance(x, y)):
+            for _ in range(len(self._observe().piles[location])):
+                pile = self._observe().piles[location]
+                if not pile or not self._set_aside(pile[-1], location):
+                    break
+                if self._set_aside(block, TABLE):
+                    return
+
+    def _set_aside(self, block: str, source: str) -> bool:
+        """Pick a block and put it down where it is in nobody's way; say whether the hand got it."""
+        try:
+            self._perform(Task(Pick(block, source), None), "recovery", self._observe(), ())
+        except ExecutionFailure:
+            if self.hand is None:
+                return False
+        self._put_down()
+        return True
 
     def _episode(self, failure: ExecutionFailure | None, final: State) -> Episode:
         rows = self.performed
@@ -373,6 +382,16 @@ class Executor:
             final=Arrangement(piles={k: list(v) for k, v in final.piles.items() if v}, table=sorted(final.table)),
             actions=rows,
         )
+
+
+def carry_out(world: World, segments: Sequence[Segment]) -> None:
+    """Let the simulated arm and fingers do what was planned."""
+    for segment in segments:
+        if isinstance(segment, Grip):
+            world.grip(segment.opening, segment.seconds)
+        else:
+            world.follow(segment.trajectory, segment.opening)
+            world.wait(PAUSE)
 
 
 def observed_instance(instance: Instance, state: State) -> Instance:

@@ -78,7 +78,7 @@ class Stage:
     def photograph(self, size: tuple[int, int]) -> Image:
         """A picture of the table, shape (height, width, 3)."""
         c, (width, height) = self.client, size
-        view = c.computeViewMatrixFromYawPitchRoll([0.0, -0.02, 0.10], 1.32, 28.0, -40.0, 0.0, 2)
+        view = c.computeViewMatrixFromYawPitchRoll([0.0, -0.02, 0.20], 1.45, 28.0, -40.0, 0.0, 2)
         lens = c.computeProjectionMatrixFOV(52.0, width / height, 0.1, 5.0)
         pixels = c.getCameraImage(
             width, height, view, lens, shadow=1, lightDirection=[0.6, 0.4, 1.4], renderer=c.ER_TINY_RENDERER
@@ -120,7 +120,8 @@ def write_film(path: Path, recording: Recording, tabletop: Tabletop) -> None:
         raise MalformedFile(str(path), f"the name of a film ends in {' or '.join(FILMS)}")
     import imageio.v2 as imageio
 
-    rate = SPEED_UP / (recording.times[1] - recording.times[0]) if len(recording.times) > 1 else 25.0
+    count, length = len(recording.times), recording.times[-1] - recording.times[0]
+    rate = SPEED_UP * (count - 1) / length if length > 0 else 25.0
     every = max(1, round(rate / 25.0))
     options: dict[str, Any] = {"fps": rate / every}
     if path.suffix == ".gif":

@@ -33,7 +33,7 @@ PUSH_MARGIN = 0.003
 PUSH_SOLUTIONS = 6
 LEAD = 0.08
 """Length of the straight descent to a push close to the table [m]."""
-LANDING = {1: (0.15, 0.04), 2: (0.24, 0.04), 3: (0.35, 0.04), 4: (0.50, 0.10), 5: (0.65, 0.10)}
+LANDING = {1: (0.23, 0.04), 2: (0.35, 0.05), 3: (0.52, 0.05), 4: (0.52, 0.10), 5: (0.68, 0.11)}
 """Measured: how far along the push and how far aside of it blocks come to rest [m], by the number that fall."""
 
 

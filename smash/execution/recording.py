@@ -33,7 +33,7 @@ class Recording:
 
     def take(self, world: World) -> None:
         """Add the present frame, if the last one is old enough."""
-        if self.times and world.time - self.times[-1] < INTERVAL - 1e-6:
+        if self.times and world.time - self.times[-1] < 0.9 * INTERVAL:
             return
         client = world.client
         states = client.getLinkStates(world.robot, LINKS, computeForwardKinematics=True)

@@ -6,6 +6,7 @@ revealed. Nothing here knows the simulator.
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -18,7 +19,7 @@ from smash.execution.kinematics import inverse
 from smash.execution.motion import MotionPlanner
 from smash.execution.paths import Path
 from smash.execution.poses import Vector, top_down
-from smash.execution.robot import MAX_OPENING
+from smash.execution.robot import MAX_OPENING, READY
 from smash.execution.scene import Attached, HandState, Scene
 from smash.execution.tabletop import Slot
 from smash.execution.timing import Pace, Trajectory, time_path
@@ -109,6 +110,14 @@ class Steps:
         self.pace = pace
         self.motion = MotionPlanner(seed=seed)
 
+    def warm_up(self) -> None:
+        """Load and compile what motion planning uses, so that the first action's time is not theirs."""
+        bare = Scene.of_boxes([], np.empty((0, 3)), 0.0).with_table()
+        turned = READY + np.array([0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+        self.move(self.motion.plan(READY, turned, bare), HandState(0.0))
+        self.move(self.motion.line(READY, (0.0, 0.0, 0.05), bare), HandState(0.0))
+        importlib.import_module("smash.execution.tree")
+
     def scene(self, poses: Mapping[str, BlockPose]) -> Scene:
         """Blocks and table as the motion planner sees them."""
         names = list(poses)
@@ -166,39 +175,42 @@ class Steps:
             NoMotion: where the way there is blocked.
         """
         carrying, touched = self.held(block), frozenset([block])
-        free = scene.without([block])
         return [
-            *self.transfer(start, approach.line.start, free, carrying),
+            *self.transfer(start, approach.line.start, scene, carrying, touched),
             self.move(approach.line, carrying, touched, CONTACT_MARGIN),
             Grip(approach.opening, OPEN_SECONDS),
             self.move(approach.line.reversed(), HandState(approach.opening), touched, CONTACT_MARGIN),
         ]
 
-    def transfer(self, start: Vector, goal: Vector, scene: Scene, hand: HandState) -> list[Move]:
-        """A free motion between configurations [rad], shape (7,); upward first where the start is too close to blocks.
+    def transfer(
+        self, start: Vector, goal: Vector, scene: Scene, hand: HandState, ignored: frozenset[str] = frozenset()
+    ) -> list[Move]:
+        """A free motion between configurations [rad], shape (7,); closer to blocks where it must be.
 
         Raises:
             NoMotion: where there is none.
         """
+        seen = scene.without(ignored)
         try:
-            return [self.move(self.motion.plan(start, goal, scene, hand=hand), hand)]
+            return [self.move(self.motion.plan(start, goal, seen, hand=hand), hand, ignored)]
         except NoMotion as failure:
-            if CollisionChecker(scene, hand, DEFAULT_MARGIN).free(start):
+            wide = CollisionChecker(seen, hand, DEFAULT_MARGIN)
+            close = [joints for joints in (start, goal) if not wide.free(joints)]
+            if not close:
                 raise
-            for height in ESCAPES:
+            for height in ESCAPES if close[0] is start else ():
                 try:
-                    up = self.motion.line(start, (0.0, 0.0, height), scene, hand=hand)
-                    onward = self.motion.plan(up.end, goal, scene, hand=hand)
+                    up = self.motion.line(start, (0.0, 0.0, height), seen, hand=hand)
+                    onward = self.motion.plan(up.end, goal, seen, hand=hand)
                 except ExecutionFailure:
                     continue
-                return [self.move(up, hand, margin=CONTACT_MARGIN), self.move(onward, hand)]
+                return [self.move(up, hand, ignored, CONTACT_MARGIN), self.move(onward, hand, ignored)]
             for margin in TIGHT_MARGINS:
                 try:
-                    return [
-                        self.move(self.motion.plan(start, goal, scene, hand=hand, margin=margin), hand, margin=margin)
-                    ]
+                    path = self.motion.plan(start, goal, seen, hand=hand, margin=margin)
                 except NoMotion:
                     continue
+                return [self.move(path, hand, ignored, margin)]
             raise failure
 
     def _openings(self) -> list[float]:

@@ -79,8 +79,9 @@ class Records:
         MalformedFile: where the file is damaged elsewhere than in its last line, or cannot be written.
     """
 
-    def __init__(self, directory: Path) -> None:
-        self.path = directory / RUNS
+    def __init__(self, directory: Path, name: str = RUNS, wanted: str = RUN_FORMAT) -> None:
+        self.path = directory / name
+        self.wanted = wanted
         self.set_aside = 0
         try:
             directory.mkdir(parents=True, exist_ok=True)
@@ -92,8 +93,10 @@ class Records:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             raise InUse(f"{directory}: another sweep is writing there; wait for it, or give another --out") from None
-        self._repair(directory / DAMAGED)
-        self.commits = {record["key"]: (record.get("commit") or {}).get("hash") for record in read_records(self.path)}
+        self._repair(directory / (DAMAGED if name == RUNS else f"{self.path.stem}.damaged"))
+        self.commits = {
+            record["key"]: (record.get("commit") or {}).get("hash") for record in read_records(self.path, wanted)
+        }
         self.finished = set(self.commits)
 
     def __enter__(self) -> Self:
@@ -127,7 +130,7 @@ class Records:
         content = self._file.read()
         end = content.rstrip(b"\n").rfind(b"\n") + 1
         last = content[end:]
-        if not last or (last.endswith(b"\n") and _is_record(last)):
+        if not last or (last.endswith(b"\n") and _is_record(last, self.wanted)):
             return
         with open(damaged, "ab") as aside:
             aside.write(last.rstrip(b"\n") + b"\n")
@@ -135,22 +138,22 @@ class Records:
         self.set_aside = 1
 
 
-def read_records(path: Path) -> Iterator[dict[str, Any]]:
-    """Yield the records of a `runs.jsonl`.
+def read_records(path: Path, wanted: str = RUN_FORMAT) -> Iterator[dict[str, Any]]:
+    """Yield the records of a `runs.jsonl`, or of another file of objects that have a `key` and the format `wanted`.
 
     Raises:
-        MalformedFile: where a line is no `smash-run/1` object.
+        MalformedFile: where a line is no such object.
     """
     with open(path, "rb") as lines:
         for number, line in enumerate(lines, start=1):
-            if not _is_record(line):
-                raise MalformedFile(f"{path}:{number}", f"no {RUN_FORMAT} object; set the line aside and sweep again")
+            if not _is_record(line, wanted):
+                raise MalformedFile(f"{path}:{number}", f"no {wanted} object; set the line aside and run again")
             yield json.loads(line)
 
 
-def _is_record(line: bytes) -> bool:
+def _is_record(line: bytes, wanted: str) -> bool:
     try:
         record = json.loads(line)
     except ValueError:
         return False
-    return isinstance(record, dict) and record.get("format") == RUN_FORMAT and isinstance(record.get("key"), str)
+    return isinstance(record, dict) and record.get("format") == wanted and isinstance(record.get("key"), str)

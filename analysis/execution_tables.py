@@ -1,0 +1,227 @@
+"""`python -m analysis.execution_tables RESULTS`: the paper's Tables I and II with our figures beside the paper's."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from analysis.cells import wilson
+from analysis.paper_tables import METRICS, PAPER, SIZES, Metric
+from analysis.records import NoRecords
+from analysis.tables import markdown, mean_std
+
+FORMAT = "smash-episode-run/1"
+RESAMPLES = 5000
+LEGEND = "Cells: mean ± std (median) over instances; success with its 95 % Wilson interval; the paper: mean ± std."
+BENCHMARKS = {"single": "Table I: single-goal rearrangement", "multi": "Table II: multi-goal rearrangement"}
+WITHOUT = "no-topple"
+VARIANTS = {"topple": "w/ topple", "max-topple-4": "w/ topple ≤ 4", WITHOUT: "w/o topple"}
+"""Plan variants in the order of the columns, and what they are called there."""
+
+
+def read_episodes(results: Path) -> pd.DataFrame:
+    """Return one row an episode of `RESULTS/episodes.jsonl`.
+
+    Columns: those of the record that are plain values, and `benchmark` (single or multi), `success`, `failure` (name),
+    `offline`, `online`, `execution`, `task` [s], `replans`, `retries`, `executed` (actions carried out).
+
+    Raises:
+        NoRecords: where there are none.
+    """
+    path = results / "episodes.jsonl"
+    try:
+        lines = path.read_bytes().splitlines()
+    except OSError as error:
+        raise NoRecords(f"{path}: cannot be read: {error.strerror}") from None
+    rows = []
+    for number, line in enumerate(lines, start=1):
+        try:
+            record = json.loads(line)
+        except ValueError:
+            if number == len(lines):
+                break
+            raise NoRecords(f"{path}:{number}: no {FORMAT} object") from None
+        rows.append(_row(record))
+    if not rows:
+        raise NoRecords(f"{path}: no finished episode")
+    return pd.DataFrame(rows)
+
+
+def _row(record: dict[str, Any]) -> dict[str, Any]:
+    plain = {key: value for key, value in record.items() if not isinstance(value, (dict, list))}
+    episode = record["episode"] or {}
+    failure = episode.get("failure") or {}
+    times = episode.get("times") or {}
+    return {
+        **plain,
+        "benchmark": str(record["suite"]).split("-")[0],
+        "success": bool(episode.get("success", False)),
+        "failure": failure.get("name") or ("" if episode.get("success") else "crashed"),
+        "reason": failure.get("reason") or record["problem"],
+        "executed": episode.get("actions_executed"),
+        "replans": episode.get("replans"),
+        "retries": episode.get("retries"),
+        **{name: times.get(name) for name in ("offline", "online", "execution", "task")},
+    }
+
+
+def metric_table(episodes: pd.DataFrame, benchmark: str) -> pd.DataFrame:
+    """Return the table of one benchmark: a row per metric and source (ours by planner and policy, the paper).
+
+    A column per number of blocks and variant. Times and numbers of actions are over successful episodes, each instance
+    counted once (the mean over its seeds).
+    """
+    part = episodes[episodes["benchmark"] == benchmark]
+    variants = [variant for variant in VARIANTS if variant in set(part["variant"])]
+    rows: list[dict[str, str]] = []
+    for metric in METRICS:
+        if benchmark not in metric.benchmarks:
+            continue
+        figures = PAPER[benchmark][metric.name]
+        row = {"metric": metric.title, "source": "paper"}
+        for index, size in enumerate(SIZES):
+            row |= {_column(size, variant): figures.get(variant, ("–",) * 3)[index] for variant in variants}
+        rows.append(row)
+        for (label, policy), group in part.groupby(["label", "policy"], sort=True):
+            row = {"metric": metric.title, "source": f"{label}, {policy}"}
+            for size in SIZES:
+                for variant in variants:
+                    chosen = group[(group["blocks"] == size) & (group["variant"] == variant)]
+                    row[_column(size, variant)] = _cell(chosen, metric)
+            rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def _column(size: int, variant: str) -> str:
+    return f"{size} blocks {VARIANTS[variant]}"
+
+
+def _cell(group: pd.DataFrame, metric: Metric) -> str:
+    if group.empty:
+        return "–"
+    if metric.name == "success":
+        low, high = wilson(int(group["success"].sum()), len(group))
+        return f"{group['success'].mean():.2f} [{low:.2f}, {high:.2f}] of {len(group)}"
+    values = group if metric.column in ("depth", "first_plan_seconds") else group[group["success"]]
+    each = values.groupby("instance")[metric.column].mean()
+    return f"{mean_std(each, metric.digits)} ({each.median():.{metric.digits}f})"
+
+
+def paired_table(episodes: pd.DataFrame) -> pd.DataFrame:
+    """Return execution time saved by topple: paired by instance, seed, planner and policy, both successful."""
+    keys = ["benchmark", "blocks", "label", "policy", "instance", "seed"]
+    done = episodes[episodes["success"]].set_index(keys)
+    without = done[done["variant"] == WITHOUT]["execution"]
+    rows = []
+    for variant, part in done[done["variant"] != WITHOUT].groupby("variant"):
+        pairs = pd.concat({"with": part["execution"], "without": without}, axis=1).dropna().reset_index()
+        for (benchmark, blocks, label, policy), group in pairs.groupby(["benchmark", "blocks", "label", "policy"]):
+            each = group.groupby("instance")[["with", "without"]].mean()
+            saved = (each["without"] - each["with"]).to_numpy(dtype=float)
+            share_saved = 100.0 * (1.0 - each["with"].sum() / each["without"].sum())
+            low, high = bootstrap(saved)
+            rows.append(
+                {
+                    "benchmark": benchmark,
+                    "blocks": blocks,
+                    "planner": label,
+                    "variant": variant,
+                    "policy": policy,
+                    "instances": len(each),
+                    "without [s]": f"{each['without'].mean():.1f}",
+                    "saved [s], mean [95 %]": f"{saved.mean():.1f} [{low:.1f}, {high:.1f}]",
+                    "saved [%]": f"{share_saved:.0f}",
+                    "topple faster in": f"{int((saved > 0).sum())}/{len(each)}",
+                }
+            )
+    return pd.DataFrame(rows)
+
+
+def bootstrap(values: np.ndarray[Any, np.dtype[np.float64]], seed: int = 0) -> tuple[float, float]:
+    """Return the 95 % percentile bootstrap interval of the mean."""
+    generator = np.random.default_rng(seed)
+    means = generator.choice(values, (RESAMPLES, len(values))).mean(axis=1)
+    low, high = np.percentile(means, [2.5, 97.5])
+    return float(low), float(high)
+
+
+def failure_table(episodes: pd.DataFrame) -> pd.DataFrame:
+    """Return every failure: how often, by whom, and one example."""
+    failed = episodes[~episodes["success"]]
+    columns = ["suite", "label", "variant", "policy", "failure"]
+    rows = []
+    for key, group in failed.groupby(columns):
+        first = group.iloc[0]
+        example = f"{first['instance']} seed {first['seed']}: {first['reason']}"
+        rows.append({**dict(zip(columns, key, strict=True)), "episodes": len(group), "example": example})
+    return pd.DataFrame(rows, columns=[*columns, "episodes", "example"])
+
+
+def latex(table: pd.DataFrame, title: str, label: str) -> str:
+    """Return a metric table as a LaTeX float in the paper's layout."""
+    columns = "ll" + "c" * (len(table.columns) - 2)
+    lines = [r"\begin{table*}[t]", r"\centering\small", rf"\begin{{tabular}}{{{columns}}}", r"\toprule"]
+    lines.append(" & ".join(_tex(str(column)) for column in table.columns) + r" \\")
+    last = ""
+    for row in table.itertuples(index=False):
+        cells = [str(cell) for cell in row]
+        lines += [r"\midrule"] if cells[0] != last else []
+        last, cells[0] = cells[0], "" if cells[0] == last else cells[0]
+        lines.append(" & ".join(_tex(cell) for cell in cells) + r" \\")
+    lines += [r"\bottomrule", r"\end{tabular}", rf"\caption{{{_tex(title)}}}", rf"\label{{{label}}}", r"\end{table*}"]
+    return "\n".join(lines) + "\n"
+
+
+def _tex(text: str) -> str:
+    for plain, written in (("%", r"\%"), ("_", r"\_"), ("±", r"$\pm$"), ("≤", r"$\le$"), ("–", "--")):
+        text = text.replace(plain, written)
+    return text
+
+
+def make(results: Path, out: Path) -> list[Path]:
+    """Write the tables as Markdown and LaTeX, and the episodes as CSV; return the files.
+
+    Raises:
+        NoRecords: where there are no episodes.
+    """
+    episodes = read_episodes(results)
+    out.mkdir(parents=True, exist_ok=True)
+    count = f"{len(episodes)} episodes, {int(episodes['success'].sum())} successful."
+    parts = ["# Execution\n", f"{count} {LEGEND}\n"]
+    files = [out / "episodes.csv", out / "tables.md"]
+    episodes.to_csv(files[0], index=False)
+    for benchmark, title in BENCHMARKS.items():
+        if not (episodes["benchmark"] == benchmark).any():
+            continue
+        table = metric_table(episodes, benchmark)
+        parts += [f"## {title}\n", markdown(table)]
+        files.append(out / f"table-{benchmark}.tex")
+        files[-1].write_text(latex(table, title, f"tab:{benchmark}"), encoding="utf-8")
+    paired, failed = paired_table(episodes), failure_table(episodes)
+    parts += ["## Execution time saved by topple, paired by instance\n", markdown(paired)] if len(paired) else []
+    parts += ["## Failures\n", markdown(failed) if len(failed) else "None.\n"]
+    files[1].write_text("\n".join(parts), encoding="utf-8")
+    return files
+
+
+def main() -> None:
+    """Make the tables and say where they are."""
+    parser = argparse.ArgumentParser(prog="python -m analysis.execution_tables", description=__doc__)
+    parser.add_argument("results", type=Path, help="directory with episodes.jsonl")
+    parser.add_argument("--out", type=Path, help="default: RESULTS/tables")
+    arguments = parser.parse_args()
+    try:
+        files = make(arguments.results, arguments.out or arguments.results / "tables")
+    except NoRecords as error:
+        sys.exit(f"analysis: {error}")
+    print("\n".join(str(file) for file in files))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,78 @@
+"""`smash episodes RESULTS`: carry out every plan of a sweep."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from smash.cli.signals import stopped_by_signals
+from smash.experiments.episodes import (
+    EPISODE_RUN_FORMAT,
+    EPISODES,
+    POLICIES,
+    EpisodeRun,
+    episode_runs,
+    run_all,
+)
+from smash.experiments.records import Records
+from smash.problem.errors import SmashError
+
+SECONDS_AN_EPISODE = 12.0
+"""Wall time of a typical episode on one core, for the estimate [s]."""
+
+
+@click.command("episodes")
+@click.argument("results", type=click.Path(path_type=Path, exists=True, file_okay=False))
+@click.option("--seeds", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="Seeds 0 to N-1.")
+@click.option(
+    "--policy",
+    "policies",
+    type=click.Choice(POLICIES),
+    multiple=True,
+    default=("replan",),
+    show_default=True,
+    help="`open` is the paper's open pipeline; may be given twice.",
+)
+@click.option("--scene", type=click.Path(path_type=Path), help="Scene file (default: the built-in scene).")
+@click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="At a time.")
+@click.option("--dry-run", is_flag=True, help="Say how many episodes are left and how long they take at a guess.")
+def command(results: Path, seeds: int, policies: tuple[str, ...], scene: Path | None, jobs: int, dry_run: bool) -> None:
+    r"""Carry out every plan in RESULTS/runs.jsonl and record each episode as one line of RESULTS/episodes.jsonl.
+
+    It may be stopped or killed at any moment: start it again and it does what is left.
+
+    \b
+    Example:
+      smash sweep experiments/tables.toml --out runs/tables && smash episodes runs/tables --policy replan --jobs 2
+    """
+    if scene is not None:
+        from smash.execution.scene_file import read_scene
+
+        read_scene(scene)
+    runs = episode_runs(results, range(seeds), policies, None if scene is None else str(scene.resolve()))
+    with stopped_by_signals() as stop, Records(results, EPISODES, EPISODE_RUN_FORMAT) as records:
+        left = sum(run.key not in records.finished for run in runs)
+        hours = left * SECONDS_AN_EPISODE / jobs / 3600
+        click.echo(f"{len(runs)} episodes, {left} left, about {hours:.1f} h with {jobs} at a time", err=True)
+        if dry_run:
+            return
+        done = 0
+
+        def ended(run: EpisodeRun, record: dict[str, Any]) -> None:
+            nonlocal done
+            done += 1
+            episode = record["episode"]
+            failure = record["problem"] if episode is None else (episode["failure"] or {}).get("reason", "success")
+            words = f"{run.record['instance']} {run.record['label']} {run.record['variant']} {run.policy} {run.seed}"
+            click.echo(f"[{done}/{left}] {words}: {failure}", err=True)
+
+        run_all(runs, records, jobs, stop, ended)
+        if stop.is_set():
+            raise _Interrupted("interrupted; every finished episode is recorded, start again to do the rest")
+    click.echo(f"{len(runs)} episodes recorded in {results / EPISODES}")
+
+
+class _Interrupted(SmashError):
+    exit_code = 130

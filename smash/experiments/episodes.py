@@ -1,0 +1,163 @@
+"""Episodes of a sweep's plans: each recorded plan is carried out under several seeds, recorded one line an episode.
+
+`RESULTS/runs.jsonl` holds the plans, `RESULTS/episodes.jsonl` gets the episodes. Every episode runs in a process of its
+own, so that a crash of the physics costs that episode alone; a stopped run is continued where it ended.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from threading import Event
+from time import perf_counter
+from typing import Any
+
+from smash.experiments.environment import commit, load, machine, versions
+from smash.experiments.records import RUNS, Records, read_records
+from smash.problem.files import instance_from_document
+from smash.problem.model import Instance, PositionsGoal
+
+EPISODE_RUN_FORMAT = "smash-episode-run/1"
+EPISODES = "episodes.jsonl"
+POLICIES = ("replan", "open")
+"""`replan`: the executor repairs, retries and replans; `open`: the paper's open pipeline."""
+REPLAN_BUDGET = 10.0
+"""Seconds of each replanning."""
+LONGEST_EPISODE = 900.0
+"""Seconds of wall time after which an episode is given up."""
+
+
+@dataclass(frozen=True, slots=True)
+class EpisodeRun:
+    """One episode to be run: the record that holds its plan, the seed, the policy, the scene file."""
+
+    record: dict[str, Any]
+    seed: int
+    policy: str
+    scene: str | None
+
+    @property
+    def key(self) -> str:
+        """Names the episode for good."""
+        scene = "" if self.scene is None else f"/{Path(self.scene).stem}"
+        return f"{self.record['key']}/{self.policy}/{self.seed}{scene}"
+
+
+def episode_runs(
+    results: Path, seeds: Sequence[int], policies: Sequence[str], scene: str | None = None
+) -> list[EpisodeRun]:
+    """Return the episodes of all plans that a sweep has recorded, seed by seed, so that a part is a fair sample.
+
+    Raises:
+        MalformedFile: where the records are damaged.
+    """
+    plans = [record for record in read_records(results / RUNS) if record["actions"] is not None]
+    plans = [record for record in plans if record["outcome"] != "refused" and record["kind"] != "cutoff"]
+    return [EpisodeRun(record, seed, policy, scene) for seed in seeds for record in plans for policy in policies]
+
+
+def run_all(
+    runs: Iterable[EpisodeRun],
+    records: Records,
+    jobs: int,
+    stop: Event,
+    ended: Callable[[EpisodeRun, dict[str, Any]], None],
+) -> None:
+    """Run what is not recorded yet, `jobs` at a time."""
+    left = [run for run in runs if run.key not in records.finished]
+    with ThreadPoolExecutor(jobs) as pool:
+        waiting: dict[Future[dict[str, Any]], EpisodeRun] = {}
+        source: Iterator[EpisodeRun] = iter(left)
+        while True:
+            while len(waiting) < jobs and not stop.is_set() and (run := next(source, None)) is not None:
+                waiting[pool.submit(run_apart, run)] = run
+            if not waiting:
+                return
+            for future in wait(waiting, timeout=1.0, return_when=FIRST_COMPLETED).done:
+                run = waiting.pop(future)
+                record = future.result()
+                if not stop.is_set():
+                    records.append(record)
+                    ended(run, record)
+
+
+def run_apart(run: EpisodeRun) -> dict[str, Any]:
+    """Run one episode in a process of its own; the record's `episode` is None where that process ended badly."""
+    started, begun, before = datetime.now(UTC), perf_counter(), load()
+    question = json.dumps({"record": run.record, "seed": run.seed, "policy": run.policy, "scene": run.scene})
+    episode, problem = None, ""
+    try:
+        ended = subprocess.run(
+            [sys.executable, "-m", "smash.experiments.episode"],
+            input=question,
+            capture_output=True,
+            text=True,
+            timeout=LONGEST_EPISODE,
+            start_new_session=True,
+        )
+        lines = ended.stdout.splitlines()
+        episode = json.loads(lines[-1]) if ended.returncode == 0 and lines else None
+        problem = "" if episode is not None else (ended.stderr.strip().splitlines() or [f"exit {ended.returncode}"])[-1]
+    except subprocess.TimeoutExpired:
+        problem = f"no end after {LONGEST_EPISODE:.0f} s"
+    return _record(run, episode, problem, started, perf_counter() - begun, before)
+
+
+def _record(
+    run: EpisodeRun, episode: dict[str, Any] | None, problem: str, started: datetime, seconds: float, before: float
+) -> dict[str, Any]:
+    plan = run.record
+    instance = instance_from_document(plan["instance_document"])
+    incumbents = plan["incumbents"]
+    return {
+        "format": EPISODE_RUN_FORMAT,
+        "key": run.key,
+        "run": plan["key"],
+        "instance": plan["instance"],
+        "suite": plan["suite"],
+        "label": plan["label"],
+        "variant": plan["variant"],
+        "policy": run.policy,
+        "seed": run.seed,
+        "scene": None if run.scene is None else Path(run.scene).stem,
+        "blocks": len(instance.blocks),
+        "depth": target_depth(instance),
+        "cost": plan["cost"],
+        "status": plan["status"],
+        "budget": plan["budget"],
+        "first_plan_seconds": incumbents[0][0] if incumbents else None,
+        "best_plan_seconds": incumbents[-1][0] if incumbents else None,
+        "episode": episode,
+        "problem": problem,
+        "wall_seconds": seconds,
+        "started": started.isoformat(timespec="milliseconds"),
+        "load_average": [before, load()],
+        "commit": commit(),
+        "machine": machine(),
+        "versions": versions("greedy") | execution_versions(),
+    }
+
+
+def execution_versions() -> dict[str, str]:
+    """Return the versions of what moves and simulates the arm."""
+    from importlib.metadata import version
+
+    return {name: version(name) for name in ("pybullet", "ompl", "pin", "coal", "toppra")}
+
+
+def target_depth(instance: Instance) -> int | None:
+    """Depth of a single-goal instance's target in its start pile, the top being 1; None for other goals."""
+    goal = instance.goal
+    if not isinstance(goal, PositionsGoal) or len(goal.positions) != 1:
+        return None
+    target = next(iter(goal.positions))
+    for pile in instance.start.values():
+        if target in pile:
+            return len(pile) - pile.index(target)
+    return None

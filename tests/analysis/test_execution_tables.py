@@ -1,0 +1,88 @@
+import json
+
+import numpy as np
+import pytest
+
+from analysis.execution_tables import bootstrap, failure_table, make, metric_table, paired_table, read_episodes
+from analysis.records import NoRecords
+
+
+def record(instance, variant, seconds, success=True, seed=0):
+    failure = None if success else {"name": "slip", "reason": "it slipped", "step": 2, "action": ["pick", "a", "s"]}
+    times = {"offline": 0.1, "online": 0.2, "execution": seconds, "task": 0.0}
+    episode = {
+        "success": success,
+        "failure": failure,
+        "times": times,
+        "actions_executed": 4,
+        "replans": 0,
+        "retries": 0,
+    }
+    return {
+        "format": "smash-episode-run/1",
+        "key": f"{instance}/{variant}/{seed}",
+        "instance": instance,
+        "suite": "multi-4",
+        "label": "smash",
+        "variant": variant,
+        "policy": "open",
+        "seed": seed,
+        "blocks": 4,
+        "depth": None,
+        "cost": 8,
+        "first_plan_seconds": 0.01,
+        "episode": episode,
+        "problem": "",
+    }
+
+
+@pytest.fixture
+def results(tmp_path):
+    records = [
+        record("a", "topple", 20.0),
+        record("a", "no-topple", 30.0),
+        record("b", "topple", 25.0),
+        record("b", "no-topple", 27.0),
+        record("c", "topple", 5.0, success=False),
+        record("c", "no-topple", 40.0),
+    ]
+    (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(r) + "\n" for r in records) + '{"format": "sma')
+    return tmp_path
+
+
+def test_the_paper_s_figures_stand_beside_ours(results):
+    table = metric_table(read_episodes(results), "multi")
+    rows = table[table["metric"] == "Success rate"].set_index("source")
+    assert rows.loc["paper", "6 blocks w/ topple"] == "0.95"
+    assert rows.loc["smash, open", "4 blocks w/ topple"].startswith("0.67")
+    assert rows.loc["smash, open", "9 blocks w/ topple"] == "–"
+
+
+def test_savings_are_paired_over_instances_that_both_solved(results):
+    (row,) = paired_table(read_episodes(results)).to_dict("records")
+    assert row["instances"] == 2
+    assert row["saved [s], mean [95 %]"].startswith("6.0")
+    assert row["topple faster in"] == "2/2"
+
+
+def test_failures_are_listed_with_an_example(results):
+    (row,) = failure_table(read_episodes(results)).to_dict("records")
+    assert row["failure"] == "slip"
+    assert "it slipped" in row["example"]
+
+
+def test_tables_are_written_as_markdown_and_latex(results):
+    files = make(results, results / "tables")
+    assert {file.name for file in files} == {"episodes.csv", "tables.md", "table-multi.tex"}
+    assert r"\begin{table*}" in (results / "tables" / "table-multi.tex").read_text()
+
+
+def test_without_records_there_is_one_line(tmp_path):
+    with pytest.raises(NoRecords, match="cannot be read"):
+        read_episodes(tmp_path)
+
+
+def test_the_bootstrap_interval_holds_the_mean():
+    values = np.array([1.0, 2.0, 3.0, 4.0])
+    low, high = bootstrap(values)
+    assert 1.0 <= low < 2.5 < high <= 4.0
