@@ -76,7 +76,8 @@ def _say_state(records: Records, runs: list[Run], kept: int) -> None:
     if records.set_aside:
         click.echo(f"the last line of {records.path} was damaged: set aside, its run is done again", err=True)
     if kept:
-        old = sum(records.commits.get(run.key, commit()["hash"]) != commit()["hash"] for run in runs)
+        now = commit()["hash"]
+        old = sum(records.commits.get(run.key, now) != now for run in runs)
         mixed = f" ({old} of them made by another commit)" if old else ""
         click.echo(f"{kept} of {len(runs)} runs were finished before and are kept{mixed}", err=True)
     others = len(records.finished) - kept

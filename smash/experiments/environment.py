@@ -47,9 +47,11 @@ def versions(planner: str) -> dict[str, str]:
     return found
 
 
-@cache
 def commit() -> dict[str, Any]:
-    """Return the commit of this code and whether files were changed since (both None outside a repository)."""
+    """Return the commit of this code and whether files were changed since (both None outside a repository).
+
+    Asked anew for each run: each starts an interpreter of its own, so a checkout during a sweep changes the code.
+    """
     here = Path(__file__).parent
 
     def git(*arguments: str) -> str | None:
