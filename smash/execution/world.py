@@ -97,6 +97,7 @@ class World:
             c.resetJointState(self.robot, joint, float(self._target[joint]))
         for finger in FINGERS:
             c.resetJointState(self.robot, finger, self.opening)
+        self._couple_fingers()
         box = c.createCollisionShape(c.GEOM_BOX, halfExtents=[side / 2] * 3)
         self.bodies: dict[str, int] = {}
         for name, pose in blocks.items():
@@ -104,6 +105,14 @@ class World:
             c.changeDynamics(body, -1, lateralFriction=friction.block)
             self.bodies[name] = body
         self._command(self._target, np.zeros(7))
+
+    def _couple_fingers(self) -> None:
+        """Let the fingers move as one: apart, they drift sideways together with the block that they squeeze."""
+        c = self.client
+        gear = c.createConstraint(
+            self.robot, FINGERS[0], self.robot, FINGERS[1], c.JOINT_GEAR, [1, 0, 0], [0, 0, 0], [0, 0, 0]
+        )
+        c.changeConstraint(gear, gearRatio=-1, erp=0.2, maxForce=200)
 
     def _command(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> None:
         c = self.client

@@ -4,6 +4,7 @@ import pytest
 
 from smash.execution.episode import episode_text
 from smash.execution.executor import OPEN, Executor, observed_instance
+from smash.execution.recording import Recording
 from smash.execution.scene_file import default_scene
 from smash.execution.tabletop import Friction
 from smash.problem import Law, Pick, Place, PositionsGoal, make_instance
@@ -39,6 +40,17 @@ def test_slippery_fingers_are_a_named_failure_with_its_step():
     assert episode.failure.name == "slip"
     assert episode.failure.action[0] in ("pick", "place")
     assert episode.failure.step == len(episode.actions)
+
+
+def test_a_block_is_set_down_within_a_millimetre_or_two():
+    instance = make_instance(
+        name="one", blocks=["a"], stacks=["s1", "s2"], start={"s1": ["a"]}, goal=PositionsGoal({"a": ("s2", 1)})
+    )
+    recording = Recording()
+    episode = run(instance, plan_of("one", Pick("a", "s1"), Place("a", "s2")), policy=OPEN, on_frame=recording.take)
+    assert episode.success
+    slot = default_scene().stacks[1]
+    assert slot.distance(*recording.blocks[-1][0, :2]) < 0.002
 
 
 def test_a_plan_of_nothing_is_judged_where_the_blocks_stand():
