@@ -82,8 +82,11 @@ class LayeredProblem:
         return max(1, len(self.blocks) - len(self.lying) + len(self.placed))
 
     def short_horizon(self) -> int:
-        """A number of layers that all plans of few detours fit: empty the highest pile, then fill the longest chain."""
-        highest = max((len(pile) for _, pile in self.piles), default=0)
+        """A number of layers that plans of few detours fit: empty the piles, then fill the longest chain.
+
+        One layer is enough for the piles that can be toppled.
+        """
+        highest = max((1 if at in self.toppled else len(pile) for at, pile in self.piles), default=0)
         longest = max((len(chain) for _, chain in self.chains), default=0)
         return min(self.sound_horizon, highest + longest + 2)
 
