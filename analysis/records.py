@@ -74,14 +74,22 @@ def incumbents_table(records: list[dict[str, Any]]) -> pd.DataFrame:
         for record in records
         for number, (seconds, cost, origin) in enumerate(record["incumbents"], start=1)
     ]
-    return pd.DataFrame(rows, columns=["key", "number", "seconds", "cost", "origin"])
+    types = {"key": "string", "number": "int64", "seconds": "float64", "cost": "int64", "origin": "string"}
+    return pd.DataFrame(rows, columns=list(types)).astype(types)
 
 
 def steps_table(records: list[dict[str, Any]]) -> pd.DataFrame:
-    """Return one row a step of the best plan: run key, step (from 1), action and its two arguments."""
-    rows = [
-        (record["key"], step, action, str(first), str(second))
-        for record in records
-        for step, (action, first, second) in enumerate(record["actions"] or [], start=1)
-    ]
-    return pd.DataFrame(rows, columns=["key", "step", "action", "first", "second"])
+    """Return one row an action of the best plan: run key, step (from 1), action, block, location, height.
+
+    `location` is a pick's source, a place's target or the toppled stack; `block` is null for a topple, `height`
+    (1 is the bottom) for the others.
+    """
+    rows = []
+    for record in records:
+        for step, (action, first, second) in enumerate(record["actions"] or [], start=1):
+            toppled = action == "topple"
+            block, location, height = (None, first, second) if toppled else (first, second, None)
+            rows.append((record["key"], step, action, block, location, height))
+    words = dict.fromkeys(("key", "action", "block", "location"), "string")
+    table = pd.DataFrame(rows, columns=["key", "step", "action", "block", "location", "height"])
+    return table.astype(words | {"step": "int64", "height": "Int64"})

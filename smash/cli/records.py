@@ -1,0 +1,123 @@
+"""`smash records`: are the records of a sweep whole and sound, and the same as tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from smash.problem.errors import MalformedFile, SmashError, Unsupported
+
+if TYPE_CHECKING:
+    from smash.experiments.audit import Check
+    from smash.experiments.experiment import Run
+
+results_argument = click.argument("results", type=click.Path(path_type=Path, file_okay=False))
+
+
+@click.group("records")
+def command() -> None:
+    """Check the records of a sweep, or write them as tables.
+
+    \b
+    Examples:
+      smash records check runs/ablation
+      smash records export runs/ablation --out runs/ablation/tables
+    """
+
+
+@command.command("check", short_help="complete, one commit, explained, legal, whole?")
+@results_argument
+@click.option(
+    "--experiment",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="FILE",
+    help="What was planned (default: RESULTS/experiment.toml, the sweep's own copy).",
+)
+def check(results: Path, experiment: Path | None) -> None:
+    """Check RESULTS/runs.jsonl: complete, nothing twice, one commit, outcomes explained, plans legal, lines whole.
+
+    Exit 0 where all is well, 3 otherwise, with one line a finding on stderr. Every recorded plan is judged by the
+    law again. What is missing or damaged is done again where the sweep is started again.
+
+    \b
+    Examples:
+      smash records check runs/ablation
+      smash records check runs/few-buffers --experiment few-buffers.toml
+    """
+    from smash.experiments.audit import audit
+
+    checks = audit(results, _planned(results, experiment))
+    _show(checks)
+    findings = [finding for check in checks for finding in check.findings]
+    for finding in findings:
+        click.echo(" ".join(finding.split()), err=True)
+    if findings:
+        raise click.exceptions.Exit(3)
+
+
+def _planned(results: Path, given: Path | None) -> Sequence[Run] | str:
+    """Return the runs that were planned, or why they are not known: only a file that was asked for must be there.
+
+    Raises:
+        MalformedFile: where the file cannot be read, or a set that is a directory is not found beside the copy.
+    """
+    from smash.experiments.experiment import experiment_runs, read_experiment
+
+    copy = results / "experiment.toml"
+    if given is None and not copy.is_file():
+        return "no experiment.toml there; --experiment FILE names it"
+    file = given or copy
+    try:
+        return experiment_runs(read_experiment(file), file.parent)
+    except MalformedFile as error:
+        if given is not None:
+            raise
+        raise MalformedFile(error.where, f"{error.problem}; --experiment FILE names the file that was run") from None
+
+
+def _show(checks: Sequence[Check]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    console = Console()
+    if not console.is_terminal:
+        console.width = 120
+    table = Table("check", "", "found")
+    for check in checks:
+        mark = Text(str(len(check.findings)), style="red") if check.findings else Text("well", style="green")
+        if check.answer.startswith("not known"):
+            mark = Text("?", style="yellow")
+        table.add_row(Text(check.question), mark, Text(check.answer))
+    console.print(table)
+
+
+@command.command("export", short_help="runs, incumbents and steps as Parquet and CSV")
+@results_argument
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), required=True, metavar="DIR")
+def export(results: Path, out: Path) -> None:
+    """Write the records of RESULTS as tidy tables to DIR, as Parquet and as CSV.
+
+    `runs` has one row a run, `incumbents` one a plan found on the way, `steps` one an action of the best plan; `key`
+    joins them. docs/records.md lists the columns.
+
+    \b
+    Example:
+      smash records export runs/ablation --out runs/ablation/tables
+    """
+    try:
+        import pyarrow  # noqa: F401
+
+        from analysis import export as tables
+        from analysis.records import NoRecords
+    except ImportError as error:
+        raise Unsupported(f"analysis is not installed ({error}): pip install 'smash-testbed[analysis]'") from None
+    try:
+        files = tables.export(results, out)
+    except NoRecords as error:
+        raise SmashError(str(error)) from None
+    for file, rows in files:
+        click.echo(f"{file}: {rows} rows")

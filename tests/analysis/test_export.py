@@ -1,0 +1,91 @@
+"""Tidy tables: the same rows as Parquet and as CSV, one a run, an incumbent, a step."""
+
+import sys
+
+import pandas as pd
+import pytest
+from click.testing import CliRunner
+from pyarrow import parquet
+
+from smash.cli import smash
+from smash.problem.errors import Unsupported
+from tests.analysis.made_up import record, write
+
+PLAN = [["topple", "s1", 2], ["pick", "b1", "table"], ["place", "b1", "s2"]]
+WHOLE = {
+    "stacks": 3,
+    "bound_origin": None,
+    "warm_start": None,
+    "horizon": None,
+    "verdict": None,
+    "cpu_seconds": None,
+    "log": "",
+    "started": "2026-01-01T00:00:00.000+00:00",
+    "load_average": [0.1, 0.2],
+    "versions": {"python": "3.11.7"},
+    "details": {},
+    "instance_document": {"name": "i"},
+    "machine": {"processor": "p", "cores": 2, "usable_cores": 2, "memory_mib": 1000, "system": "Linux"},
+}
+
+
+def export(tmp_path, *records):
+    results = write(tmp_path / "results", records)
+    return CliRunner().invoke(smash, ["records", "export", str(results), "--out", str(tmp_path / "out")])
+
+
+@pytest.fixture
+def tables(tmp_path):
+    solved = record(0, [(0.1, 5), (0.2, 3)], **WHOLE, actions=PLAN)
+    ended = export(tmp_path, solved, record(1, **WHOLE))
+    assert ended.exit_code == 0, ended.output
+    return tmp_path / "out"
+
+
+@pytest.mark.parametrize(("name", "rows"), [("runs", 2), ("incumbents", 2), ("steps", 3)])
+def test_parquet_and_csv_hold_the_same(tables, name, rows):
+    first, second = pd.read_parquet(tables / f"{name}.parquet"), pd.read_csv(tables / f"{name}.csv")
+    assert len(first) == len(second) == rows
+    assert list(first.columns) == list(second.columns)
+    assert parquet.read_schema(tables / f"{name}.parquet").metadata[b"format"] == b"smash-tables/1"
+
+
+def test_a_run_is_one_flat_row(tables):
+    runs = pd.read_parquet(tables / "runs.parquet")
+    assert runs["cost"].tolist() == [3, pd.NA]
+    assert runs["commit_hash"].tolist() == ["c", "c"]
+    assert runs["machine_cores"].tolist() == [2, 2]
+    assert runs["load_after"].tolist() == [0.2, 0.2]
+    assert runs["started"].dt.year.tolist() == [2026, 2026]
+    assert {"actions", "incumbents", "verdict", "machine"}.isdisjoint(runs.columns)
+
+
+def test_a_step_names_block_location_and_height(tables):
+    steps = pd.read_parquet(tables / "steps.parquet").astype(object)
+    steps = steps.where(steps.notna(), None)
+    assert steps[["action", "block", "location", "height"]].values.tolist() == [
+        ["topple", None, "s1", 2],
+        ["pick", "b1", "table", None],
+        ["place", "b1", "s2", None],
+    ]
+
+
+def test_columns_and_their_types_do_not_hang_on_what_was_recorded(tables, tmp_path):
+    export(tmp_path / "unsolved", record(1, **WHOLE))
+    for name in ("runs", "incumbents", "steps"):
+        full, empty = (parquet.read_schema(at / f"{name}.parquet") for at in (tables, tmp_path / "unsolved" / "out"))
+        assert full.equals(empty), name
+
+
+def test_any_json_string_is_a_name(tmp_path):
+    assert export(tmp_path, record(0, instance='\ud800, "ü"\n', actions=PLAN, trace=[(0.1, 3)], **WHOLE)).exit_code == 0
+    assert pd.read_csv(tmp_path / "out" / "runs.csv")["instance"].tolist() == ['\\ud800, "ü"\n']
+
+
+def test_no_records_and_missing_packages_are_one_line(tmp_path, monkeypatch):
+    ended = CliRunner().invoke(smash, ["records", "export", str(tmp_path), "--out", str(tmp_path / "out")])
+    assert "runs.jsonl: cannot be read" in str(ended.exception)
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    ended = CliRunner().invoke(smash, ["records", "export", str(tmp_path), "--out", str(tmp_path / "out")])
+    assert isinstance(ended.exception, Unsupported)
+    assert "pip install 'smash-testbed[analysis]'" in str(ended.exception)
