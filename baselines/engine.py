@@ -32,7 +32,6 @@ class Run:
     directory: Path
     deadline: float
     memory: int
-    lower_bound: int | None = None
     infeasible: bool = False
     details: dict[str, Any] = field(default_factory=dict)
 
@@ -45,7 +44,7 @@ class Run:
 
     def raise_bound(self, bound: int) -> None:
         """Take a lower bound that the engine proved."""
-        self.lower_bound = max(bound, self.lower_bound or 0)
+        self.log.prove(bound, self.origin)
 
 
 class EnginePlanner(BasePlanner):
@@ -85,7 +84,8 @@ class EnginePlanner(BasePlanner):
         log = IncumbentLog(instance, options, on_incumbent)
         if Law(instance, options).goal_shortfall(State.start_of(instance)) is None:
             log.offer((), "start")
-            return log.result(lower_bound=0, bound_origin="start")
+            log.prove(0, "start")
+            return log.result()
         task = compile_instance(trim_buffers(instance), options, self.encoding)
         with tempfile.TemporaryDirectory(prefix="smash-", ignore_cleanup_errors=True) as folder:
             run = Run(task, log, self.name, Path(folder), deadline, self.memory)
@@ -109,9 +109,8 @@ class EnginePlanner(BasePlanner):
         if run.log.best is None and outcome.kind == "unsupported":
             raise Unsupported(f"{self.name}: {outcome.text}")
         return run.log.result(
-            lower_bound=run.lower_bound,
-            bound_origin=self.name,
             infeasible=run.infeasible,
+            bound_origin=self.name,
             details=run.details,
         )
 

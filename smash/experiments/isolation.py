@@ -122,6 +122,7 @@ class _Heard:
         self._tell = on_incumbent
         self._best: tuple[Action, ...] | None = None
         self._trace: list[Incumbent] = []
+        self._proof: Mapping[str, Any] = {}
         self._refusal: Verdict | None = None
         self._answer: Mapping[str, Any] | None = None
         self._failure: Mapping[str, Any] | None = None
@@ -132,6 +133,9 @@ class _Heard:
         match message["kind"]:
             case "incumbent":
                 self._plan(message["actions"], message["cost"], message["seconds"], self._job.planner)
+            case "bound":
+                if message["bound"] > self._proof.get("lower_bound", -1):
+                    self._proof = {"lower_bound": message["bound"], "bound_origin": message["origin"]}
             case "result":
                 self._answer = message
                 self._take_answer(message)
@@ -152,9 +156,12 @@ class _Heard:
         answer = self._answer or {}
         ended = self._ended or {}
         refused = outcome == "refused"
+        proof = {} if self._refusal is not None else self._answer or self._proof
         status: Status = "unknown" if self._best is None else "feasible"
         if not refused and answer.get("status") in ("optimal", "infeasible"):
             status = answer["status"]
+        elif self._best is not None and proof.get("lower_bound") == len(self._best):
+            status = "optimal"
         verdict = self._refusal
         if verdict is None and self._best is not None:
             verdict = Verdict(True)
@@ -163,8 +170,8 @@ class _Heard:
             status=status,
             reason=reason,
             actions=self._best,
-            lower_bound=None if refused else answer.get("lower_bound"),
-            bound_origin=None if refused else answer.get("bound_origin"),
+            lower_bound=proof.get("lower_bound"),
+            bound_origin=proof.get("bound_origin"),
             incumbents=tuple(self._trace),
             verdict=verdict,
             details=answer.get("details", {}),
@@ -215,6 +222,8 @@ class _Heard:
         self._refusal = self._refusal or Verdict(False, reason)
 
     def _outcome(self, interrupted: bool) -> tuple[OutcomeName, str]:
+        if self._best is not None and self._proof.get("lower_bound", 0) > len(self._best):
+            self._refuse(f"lower bound {self._proof['lower_bound']}, yet there is a legal plan of {len(self._best)}")
         if self._failure is not None:
             return self._failure["outcome"], self._failure["reason"]
         if self._refusal is not None:

@@ -1,6 +1,6 @@
 """Inside a run's own process: load the planner, call it, and say what it finds as JSON lines on a pipe.
 
-Lines: `solving` (the clock starts), `incumbent` (at once), then `result` or `failed`.
+Lines: `solving` (the clock starts), `incumbent` and `bound` (at once), then `result` or `failed`.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def _solve(job: Job, voice: _Voice) -> None:
             prepare()
         voice.say(kind="solving")
         voice.started = perf_counter()
-        result = planner.solve(job.instance, job.options, job.budget, voice.incumbent)
+        result = planner.solve(job.instance, job.options, job.budget, voice)
     except UnknownPlanner as error:  # the one that is to warm-start it
         return voice.say(kind="failed", outcome="malformed", reason=str(error))
     except Unsupported as error:
@@ -67,7 +67,7 @@ def _solve(job: Job, voice: _Voice) -> None:
 
 
 class _Voice:
-    """The pipe to the guardian; planners may report from any thread."""
+    """The pipe to the guardian, and the planner's `on_incumbent`; planners may report from any thread."""
 
     def __init__(self, pipe: int) -> None:
         self._pipe = pipe
@@ -80,11 +80,20 @@ class _Voice:
             while line:
                 line = line[os.write(self._pipe, line) :]
 
-    def incumbent(self, seconds: float, cost: int, actions: Sequence[Action]) -> None:
-        """Report a plan; a time that is negative or still to come is replaced by now."""
-        now = perf_counter() - self.started
-        at = float(seconds) if 0 <= seconds <= now else now
+    def __call__(self, seconds: float, cost: int, actions: Sequence[Action]) -> None:
+        """Report a plan."""
+        at = self._time(seconds)
         self.say(kind="incumbent", seconds=at, cost=int(cost), actions=[action_list(action) for action in actions])
+
+    def bound(self, seconds: float, bound: int, origin: str) -> None:
+        """Report a lower bound; one that is not finite says nothing."""
+        if math.isfinite(bound):
+            self.say(kind="bound", seconds=self._time(seconds), bound=int(bound), origin=str(origin))
+
+    def _time(self, seconds: float) -> float:
+        """Return when it was; a time that is negative or still to come is replaced by now."""
+        now = perf_counter() - self.started
+        return float(seconds) if 0 <= seconds <= now else now
 
 
 def _result_document(result: PlanResult) -> dict[str, Any]:

@@ -43,7 +43,9 @@ class GreedyPlanner(BasePlanner):
         problem = Indexed.of(instance)
         for steps in greedy_steps(problem, options, perf_counter() + budget, options.seed):
             log.offer(problem.actions(steps), "greedy")
-        return log.result(lower_bound=0 if log.cost == 0 else None, bound_origin="start" if log.cost == 0 else None)
+        if log.cost == 0:
+            log.prove(0, "start")
+        return log.result()
 
 
 def greedy_steps(problem: Indexed, options: PlanOptions, deadline: float, seed: int = 0) -> Iterator[list[Step]]:

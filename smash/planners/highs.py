@@ -33,7 +33,7 @@ def solve(
 
     Args:
         model: the model.
-        time_limit: wall time [s] for HiGHS; reading the model comes on top.
+        time_limit: wall time [s], handing over the model included.
         threads: threads of HiGHS.
         seed: its random seed.
         start: a feasible vector, shape (n,), to start from.
@@ -46,7 +46,7 @@ def solve(
     began = perf_counter()
     solver = _loaded(model)
     settings = {
-        "time_limit": max(0.0, time_limit),
+        "time_limit": max(0.0, time_limit - (perf_counter() - began)),
         "threads": threads,
         "random_seed": seed,
         "mip_abs_gap": absolute_gap,

@@ -5,8 +5,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from time import perf_counter
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -81,10 +83,19 @@ class MilpResult:
     nodes: int
 
 
+class OutOfTime(Exception):
+    """A builder's deadline has passed."""
+
+
 @dataclass(slots=True)
 class MilpBuilder:
-    """Collects columns and rows in blocks of arrays; `build` makes the `Milp`."""
+    """Collects columns and rows in blocks of arrays; `build` makes the `Milp`.
 
+    Past `deadline` [s, clock of `perf_counter`] adding rows and `build` raise `OutOfTime`: every loop that makes a
+    model adds rows, so that none of them runs on.
+    """
+
+    deadline: float = math.inf
     _costs: list[Floats] = field(default_factory=list)
     _lower: list[Floats] = field(default_factory=list)
     _upper: list[Floats] = field(default_factory=list)
@@ -136,7 +147,11 @@ class MilpBuilder:
             count: number of rows.
             lower: lower sides, shape (count,) or one for all.
             upper: upper sides, shape (count,) or one for all.
+
+        Raises:
+            OutOfTime: where the deadline has passed.
         """
+        self._check_time()
         at = np.asarray(rows, dtype=np.int64).ravel()
         where = np.asarray(columns, dtype=np.int64).ravel()
         self._entries.append((at + self._rows, where, np.broadcast_to(np.asarray(values, dtype=float), at.shape)))
@@ -150,7 +165,12 @@ class MilpBuilder:
         self.add_rows(np.zeros(len(where)), where, values, count=1, lower=lower, upper=upper)
 
     def build(self, name: Callable[[int], str] = str) -> Milp:
-        """Return the model."""
+        """Return the model.
+
+        Raises:
+            OutOfTime: where the deadline has passed.
+        """
+        self._check_time()
         from scipy.sparse import coo_array
 
         rows, columns, values = (_joined([entry[part] for entry in self._entries]) for part in range(3))
@@ -166,6 +186,10 @@ class MilpBuilder:
             row_upper=_joined(self._row_upper),
             name=name,
         )
+
+    def _check_time(self) -> None:
+        if perf_counter() > self.deadline:
+            raise OutOfTime
 
 
 def _joined(parts: list[Any]) -> Floats:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from time import perf_counter
 from typing import Any, ClassVar
 
 from smash.planners.astar import StateSearch
 from smash.planners.greedy import greedy_steps
 from smash.planners.indexed import Indexed
-from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
+from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, Relay, SolveOptions
 from smash.problem.feasibility import why_infeasible
-from smash.problem.model import Action, Instance
+from smash.problem.model import Instance
 
 SPARE_SECONDS = 0.05
 """Kept back from the budget for the end of the last part."""
@@ -52,7 +52,7 @@ class SmashPlanner(BasePlanner):
 
 
 class _Combined:
-    """One solve: the parts share the incumbents of `log` and the best bound."""
+    """One solve: the parts share the plans and the bounds of `log`."""
 
     def __init__(self, instance: Instance, options: SolveOptions, budget: float, log: IncumbentLog) -> None:
         self.instance = instance
@@ -61,15 +61,13 @@ class _Combined:
         self.budget = budget
         self.deadline = perf_counter() + budget - min(SPARE_SECONDS, budget / 10)
         self.problem = Indexed.of(instance)
-        self.bound = 0
-        self.origin = "start"
+        self.log.prove(0, "start")
         self.seconds: dict[str, float] = {}
 
     def run(self) -> PlanResult:
         """Run the parts in turn until the best plan is proven or the budget is spent."""
         self._greedy()
-        search = StateSearch(self.problem, self.options, self._cost())
-        self._prove(search.lower_bound, "astar")
+        search = StateSearch(self.problem, self.options, self._cost(), on_bound=lambda b: self.log.prove(b, "astar"))
         parts: tuple[tuple[str, Callable[[], None]], ...] = (
             ("light search", lambda: self._search(search, perf_counter() + LIGHT_SECONDS, may_compile=False)),
             ("precedence", self._precedence),
@@ -79,13 +77,13 @@ class _Combined:
         )
         small = self.problem.blocks <= SMALL_BLOCKS
         for name, part in (parts[0], parts[2], parts[1], *parts[3:]) if small else parts:
-            if self._settled() or self._left() <= 0:
+            if self.log.proven or self._left() <= 0:
                 break
             started = perf_counter()
             part()
             self.seconds[name] = perf_counter() - started
         details: dict[str, Any] = {"expanded": search.expanded, "search": search.ended, "seconds": self.seconds}
-        return self.log.result(lower_bound=self.bound, bound_origin=self.origin, details=details)
+        return self.log.result(details=details)
 
     def _cost(self) -> int:
         assert self.log.cost is not None
@@ -93,14 +91,6 @@ class _Combined:
 
     def _left(self) -> float:
         return self.deadline - perf_counter()
-
-    def _settled(self) -> bool:
-        return self.bound >= self._cost()
-
-    def _prove(self, bound: int | None, origin: str | None) -> None:
-        if bound is not None and bound > self.bound:
-            self.bound = bound
-            self.origin = origin or "unknown"
 
     def _greedy(self) -> None:
         until = perf_counter() + GREEDY_SHARE * self.budget
@@ -110,34 +100,29 @@ class _Combined:
     def _search(self, search: StateSearch, until: float, may_compile: bool = True) -> None:
         """Search over states until `until` [s, clock of `perf_counter`]."""
         until = min(until, self.deadline)
-        search.raise_bound(self.bound, self._cost())
+        search.raise_bound(self.log.bound or 0, self._cost())
         while search.ended is None and perf_counter() < until:
             steps = search.run(until, may_compile)
             if steps is not None:
                 self.log.offer(self.problem.actions(steps), "exact")
-            self._prove(search.lower_bound, "astar")
-            if self._settled() or steps is None:
+            if self.log.proven or steps is None:
                 return
 
     def _precedence(self) -> None:
         from smash.planners.precedence.bound import ORIGIN, precedence_bound
 
-        found = precedence_bound(
+        precedence_bound(
             self.instance,
             self.options,
             perf_counter() + (PRECEDENCE_SHARE if self.problem.blocks <= FEW_BLOCKS else 1.0) * self._left(),
             lambda actions: self.log.offer(actions, "exact"),
             self.options.threads,
+            on_bound=lambda bound: self.log.prove(bound, ORIGIN),
         )
-        self._prove(found.bound, ORIGIN)
 
     def _layered(self) -> None:
         if self.problem.blocks > FEW_BLOCKS:
             return
         from smash.planners.layered import LayeredPlanner
 
-        def offer(_: float, __: int, actions: Sequence[Action]) -> None:
-            self.log.offer(actions, "milp")
-
-        result = LayeredPlanner().solve(self.instance, self.options, self._left(), offer)
-        self._prove(result.lower_bound, result.bound_origin)
+        LayeredPlanner().solve(self.instance, self.options, self._left(), Relay(self.log, "milp"))

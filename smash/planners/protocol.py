@@ -12,7 +12,11 @@ from smash.problem.plan import Incumbent, Plan, Status
 from smash.problem.rules import Law
 
 OnIncumbent = Callable[[float, int, Sequence[Action]], None]
-"""`on_incumbent(seconds, cost, actions)`: called at once with every better plan; seconds since the call of `solve`."""
+"""`on_incumbent(seconds, cost, actions)`: called at once with every better plan; seconds since the call of `solve`.
+
+It may have a method `bound(seconds, bound, origin)` too: then that is called at once with every better lower bound,
+so that a run that is stopped keeps its proof. `IncumbentLog` does both.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +120,8 @@ class BasePlanner:
 class IncumbentLog:
     """Collects strictly better plans with their times, checks each by the law, and passes it on at once.
 
-    One log a solve: make it first, so that its clock counts build and translation too.
+    It keeps the best lower bound in the same way. One log a solve: make it first, so that its clock counts build
+    and translation too.
     """
 
     def __init__(
@@ -132,16 +137,19 @@ class IncumbentLog:
         Args:
             instance: the problem.
             options: what a plan may use.
-            on_incumbent: called with every better plan.
+            on_incumbent: called with every better plan; its `bound`, where it has one, with every better bound.
             gentle: let no block fall that can as well be picked from its stack (`gentle_topples`).
         """
         self._started = perf_counter()
         self._instance = instance
         self._law = Law(instance, options)
         self._report = on_incumbent
+        self._report_bound = getattr(on_incumbent, "bound", None)
         self._gentle = gentle
         self.entries: list[Incumbent] = []
         self.best: tuple[Action, ...] | None = None
+        self.bound: int | None = None
+        self.bound_origin: str | None = None
         self.refusals: list[str] = []
 
     @property
@@ -153,6 +161,11 @@ class IncumbentLog:
     def cost(self) -> int | None:
         """Cost of the best plan so far, or None."""
         return None if self.best is None else len(self.best)
+
+    @property
+    def proven(self) -> bool:
+        """Whether the best plan meets the best lower bound."""
+        return self.best is not None and self.bound is not None and self.bound >= len(self.best)
 
     def offer(self, actions: Sequence[Action], origin: str, seconds: float | None = None) -> bool:
         """Take a plan if it is legal and better than the best; report it at once.
@@ -178,6 +191,19 @@ class IncumbentLog:
             self._report(at, len(self.best), self.best)
         return True
 
+    def prove(self, bound: int, origin: str) -> None:
+        """Take a lower bound on the cost of every plan if it is better than the best; report it at once.
+
+        Args:
+            bound: no plan costs less.
+            origin: what proves it.
+        """
+        if self.bound is not None and bound <= self.bound:
+            return
+        self.bound, self.bound_origin = bound, origin
+        if self._report_bound is not None:
+            self._report_bound(self.elapsed, bound, origin)
+
     def _softened(self, actions: Sequence[Action]) -> tuple[Action, ...]:
         if self._gentle:
             from smash.planners.gentle import gentle_topples
@@ -190,22 +216,43 @@ class IncumbentLog:
     def result(
         self,
         *,
-        lower_bound: int | None = None,
-        bound_origin: str | None = None,
         infeasible: bool = False,
+        bound_origin: str | None = None,
         details: Mapping[str, Any] | None = None,
     ) -> PlanResult:
-        """Return the result: `optimal` where the bound meets the best cost, `infeasible` only where that is proven."""
+        """Return the result: `optimal` where the best bound meets the best cost.
+
+        Args:
+            infeasible: whether it is proven that there is no plan.
+            bound_origin: what proves that.
+            details: what only this planner measures.
+        """
         status: Status
         if self.best is not None:
-            status = "optimal" if lower_bound is not None and lower_bound >= len(self.best) else "feasible"
+            status = "optimal" if self.proven else "feasible"
         else:
             status = "infeasible" if infeasible else "unknown"
         return PlanResult(
             status=status,
             actions=self.best,
-            lower_bound=lower_bound,
-            bound_origin=bound_origin if lower_bound is not None or infeasible else None,
+            lower_bound=self.bound,
+            bound_origin=bound_origin if infeasible else self.bound_origin,
             incumbents=tuple(self.entries),
             details=details or {},
         )
+
+
+@dataclass(frozen=True, slots=True)
+class Relay:
+    """An `on_incumbent` that hands what another planner finds and proves to the log of the planner that asked it."""
+
+    log: IncumbentLog
+    origin: str
+
+    def __call__(self, seconds: float, cost: int, actions: Sequence[Action]) -> None:
+        """Take a plan, under the origin of this relay."""
+        self.log.offer(actions, self.origin)
+
+    def bound(self, seconds: float, bound: int, origin: str) -> None:
+        """Take a lower bound."""
+        self.log.prove(bound, origin)

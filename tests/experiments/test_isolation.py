@@ -1,5 +1,6 @@
 """A run's own process: limits hold, every end has a name, what was found is kept, nothing outlives it."""
 
+import json
 import os
 import signal
 import subprocess
@@ -15,7 +16,7 @@ from smash.experiments.isolation import run_isolated
 from smash.experiments.job import Job
 from smash.planners.protocol import SolveOptions
 from smash.problem.errors import SmashError
-from smash.problem.files import read_instance
+from smash.problem.files import plan_from_document, plan_text, read_instance
 
 pytestmark = pytest.mark.usefixtures("third_party")
 
@@ -114,6 +115,36 @@ def test_a_hang_is_stopped_within_its_grace_and_keeps_its_plan(run, alive):
     report = run("hangs-with-plan", budget=0.3)
     assert 0.3 + 0.5 <= report.wall_seconds < 0.3 + 0.5 + 1.0
     assert (report.outcome, report.status, report.exit_code) == ("over-budget", "feasible", 0)
+    assert not alive()
+
+
+@pytest.mark.parametrize(("topple", "status", "cost"), [(True, "feasible", 5), (False, "unknown", None)])
+def test_a_hang_keeps_the_best_bound_that_it_had_proven(run, tower_file, topple, status, cost):
+    report = run("hangs-with-bounds", budget=0.3, topple=topple)
+    job = Job("hangs-with-bounds", read_instance(tower_file), SolveOptions(topple=topple), 0.3)
+    filed = plan_from_document(json.loads(plan_text(report.plan(job))))
+    assert report.outcome == "over-budget"
+    assert (filed.status, filed.cost) == (status, cost)
+    assert (filed.lower_bound, filed.bound_origin) == (3, "proof of 3")
+
+
+def test_a_hang_whose_plan_meets_its_bound_is_proven_all_the_same(run):
+    report = run("hangs-proven", budget=0.2)
+    assert (report.outcome, report.status, report.lower_bound, report.exit_code) == ("over-budget", "optimal", 5, 0)
+
+
+def test_a_streamed_bound_above_a_legal_plan_is_refused(run):
+    report = run("hangs-after-boasting", budget=0.2)
+    assert report.outcome == "refused"
+    assert "lower bound 6" in report.reason
+    assert report.lower_bound is None
+
+
+def test_an_interrupted_run_keeps_its_bound(run, alive):
+    stop = Event()
+    report = run("hangs-with-bounds", budget=60, stop=stop, on_incumbent=lambda *_: stop.set())
+    assert (report.outcome, report.status, report.exit_code) == ("interrupted", "feasible", 130)
+    assert (report.lower_bound, report.bound_origin) == (3, "proof of 3")
     assert not alive()
 
 

@@ -6,7 +6,7 @@ import subprocess
 import sys
 import time
 
-from smash.planners.protocol import PlanResult
+from smash.planners.protocol import IncumbentLog, PlanResult
 from smash.problem import Pick, Place, Topple
 from smash.problem.plan import Incumbent
 
@@ -63,6 +63,28 @@ class HangsWithPlan:
     def solve(self, instance, options, budget, on_incumbent=None):
         on_incumbent(0.0, 5, detour(instance, 1))
         time.sleep(600)
+
+
+class HangsWithBounds:
+    """Streams bounds that rise, then a plan of 5, then nothing more."""
+
+    bounds = (2, 3, 1)
+
+    def solve(self, instance, options, budget, on_incumbent=None):
+        log = IncumbentLog(instance, options, on_incumbent)
+        for bound in self.bounds:
+            log.prove(bound, f"proof of {bound}")
+        if options.topple:
+            log.offer(detour(instance, 1), "mine")
+        time.sleep(600)
+
+
+class HangsProven(HangsWithBounds):
+    bounds = (5,)
+
+
+class HangsAfterBoasting(HangsWithBounds):
+    bounds = (6,)
 
 
 class Hangs:
@@ -147,6 +169,9 @@ PLANNERS = {
     "segfaults": Segfaults,
     "exits": Exits,
     "hangs-with-plan": HangsWithPlan,
+    "hangs-with-bounds": HangsWithBounds,
+    "hangs-proven": HangsProven,
+    "hangs-after-boasting": HangsAfterBoasting,
     "hangs": Hangs,
     "leaves-children": LeavesChildren,
     "eats-memory": EatsMemory,

@@ -1,11 +1,19 @@
 """The layered model: its proofs are exhaustive search's, its plans the law's."""
 
+from math import inf
+from time import perf_counter
+
 import pytest
 from hypothesis import given, settings
 
-from smash.planners.layered import LayeredPlanner
+from smash.planners.layered import LayeredPlanner, planner
+from smash.planners.layered.events import LayeredProblem, build_layered
+from smash.planners.layered.positions import build_positions
+from smash.planners.layered.resting import build_resting
+from smash.planners.milp import OutOfTime
 from smash.planners.protocol import SolveOptions
 from smash.problem import Law
+from smash.problem.generators import generate
 from smash.problem.suites import read_suite
 from tests.oracle import optimal_cost
 from tests.strategies import instances, plan_options
@@ -66,3 +74,36 @@ def test_hardly_any_time_is_no_crash(budget):
 def test_a_warm_start_by_itself_starts_cold():
     result = solve(read_suite("multi-4")[0], SolveOptions(), warm_start="smash-layered")
     assert result.status == "optimal"
+
+
+@pytest.mark.parametrize("late", [True, False])
+def test_building_stops_at_its_deadline(late):
+    instance, options = read_suite("multi-6")[0], SolveOptions()
+    problem = LayeredProblem.of(instance, options)
+    deadline = perf_counter() if late else inf
+    builds = (
+        lambda: build_layered(problem, options, 8, deadline).milp,
+        lambda: build_resting(instance, problem, options, 8, 0, None, deadline).layered.milp,
+        lambda: build_positions(instance, problem.demands, options, 8, 0, None, deadline).milp,
+    )
+    for build in builds:
+        if late:
+            with pytest.raises(OutOfTime):
+                build()
+        else:
+            assert build().rows > 0
+
+
+def test_what_takes_too_long_to_build_is_left_out(monkeypatch):
+    monkeypatch.setattr(planner, "BUILD_SHARE", 0.0)
+    result = solve(read_suite("multi-6")[0], SolveOptions())
+    assert {stage["skipped"] for stage in result.details["stages"]} == {"took too long to build"}
+    assert (result.status, result.lower_bound) == ("unknown", 2 * 6)
+
+
+def test_forty_blocks_keep_a_short_budget():
+    instance = next(generate("multi", 40, 2, 1, 5))
+    LayeredPlanner().prepare()
+    started = perf_counter()
+    solve(instance, SolveOptions(topple=False), budget=2.0)
+    assert perf_counter() - started < 2.5

@@ -82,6 +82,15 @@ def test_the_budget_is_kept_at_every_size(blocks, budget):
     assert result.lower_bound is not None
 
 
+def test_the_budget_is_kept_where_the_layered_model_is_large():
+    instance = next(generate("multi", 40, 2, 1, 5))
+    SmashPlanner().prepare()
+    started = perf_counter()
+    result = SmashPlanner().solve(instance, SolveOptions(topple=False), 2.0)
+    assert perf_counter() - started < 2.5
+    assert result.lower_bound <= result.cost
+
+
 def test_an_empty_problem_needs_no_action():
     instance = make_instance(name="none", blocks=[], stacks=["s1"], start={}, goal=StacksGoal({}))
     result = SmashPlanner().solve(instance, SolveOptions(), 1)

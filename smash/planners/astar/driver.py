@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from time import perf_counter
 
 from smash.planners.astar.compiled import INTERPRETED, Code, compiled_code
@@ -37,6 +38,7 @@ class StateSearch:
         options: what a plan may use.
         upper: the cost of a plan that is known.
         memory: the most memory to take [bytes]; None: as much as `free_memory` says.
+        on_bound: called at once with every better lower bound than 0.
 
     Attributes:
         lower_bound: what no plan is cheaper than, so far.
@@ -44,8 +46,16 @@ class StateSearch:
         expanded: nodes expanded.
     """
 
-    def __init__(self, problem: Indexed, options: PlanOptions, upper: int, memory: int | None = None) -> None:
+    def __init__(
+        self,
+        problem: Indexed,
+        options: PlanOptions,
+        upper: int,
+        memory: int | None = None,
+        on_bound: Callable[[int], object] | None = None,
+    ) -> None:
         self.problem = problem
+        self._on_bound = on_bound
         self.lower_bound = 0
         self.ended: str | None = None
         self.expanded = 0
@@ -56,9 +66,8 @@ class StateSearch:
             self.ended = "too many blocks and kinds of locations for a byte"
             return
         self._engine = _Engine(setting, INTERPRETED, False)
-        self.lower_bound = self._engine.first_bound()
+        self._prove(min(self._engine.first_bound(), upper))
         if self.lower_bound >= upper:
-            self.lower_bound = upper
             self.ended = "proven"
         elif (upper - self.lower_bound + 1) * (upper + 1) > MOST_BUCKETS:
             self.ended = "the plan known is too far from the bound"
@@ -75,7 +84,7 @@ class StateSearch:
                 return None
             engine = self._engine
             outcome = engine.expand()
-            self.lower_bound = max(self.lower_bound, min(engine.counter(FLOOR), engine.counter(UPPER)))
+            self._prove(min(engine.counter(FLOOR), engine.counter(UPPER)))
             self.expanded = engine.counter(EXPANDED)
             if outcome == PROVEN:
                 self.ended = "proven"
@@ -97,6 +106,12 @@ class StateSearch:
         if self.lower_bound >= counters[UPPER]:
             self.lower_bound = int(counters[UPPER])
             self.ended = "proven"
+
+    def _prove(self, bound: int) -> None:
+        if bound > self.lower_bound:
+            self.lower_bound = bound
+            if self._on_bound is not None:
+                self._on_bound(bound)
 
     def _ready(self, deadline: float, may_compile: bool) -> bool:
         """Take the compiled search where it is there, or where the problem is too large to be searched without."""

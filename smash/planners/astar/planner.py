@@ -36,10 +36,11 @@ class AStarPlanner(BasePlanner):
         for steps in greedy_steps(problem, options, perf_counter() + budget / 10, options.seed):
             log.offer(problem.actions(steps), "greedy")
         assert log.cost is not None
-        search = StateSearch(problem, options, log.cost)
+        log.prove(0, "start")
+        search = StateSearch(problem, options, log.cost, on_bound=lambda bound: log.prove(bound, "astar"))
         while search.ended is None and perf_counter() < deadline:
             found = search.run(deadline)
             if found is not None:
                 log.offer(problem.actions(found), "exact")
         details = {"expanded": search.expanded, "ended": search.ended or "budget"}
-        return log.result(lower_bound=search.lower_bound, bound_origin="astar", details=details)
+        return log.result(details=details)

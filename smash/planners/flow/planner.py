@@ -51,7 +51,8 @@ class FlowPlanner(BasePlanner):
         log = IncumbentLog(instance, options, on_incumbent)
         if Law(instance, options).goal_shortfall(State.start_of(instance)) is None:
             log.offer((), "milp")
-            return log.result(lower_bound=0, bound_origin="start")
+            log.prove(0, "start")
+            return log.result()
         if why_infeasible(instance, options) is not None:
             return log.result(infeasible=True, bound_origin="feasibility")
         if options.warm_start is not None:
@@ -68,7 +69,7 @@ class FlowPlanner(BasePlanner):
             search.details["stopped"] = str(error)
         if log.refusals:
             search.details["refusals"] = list(log.refusals)
-        return log.result(lower_bound=search.lower, bound_origin=search.origin, details=search.details)
+        return log.result(details=search.details)
 
     def build_model(self, instance: Instance, options: SolveOptions) -> Milp:
         """Return the model that `solve` starts with (of `options.horizon` steps, if given), without solving it.

@@ -45,11 +45,11 @@ class TooLarge(SmashError):
 
 @dataclass
 class FlowSearch:
-    """One solve: the models tried, the best bound, the incumbents.
+    """One solve: the models tried; `log` takes the plans and the bounds.
+
+    Bounds come from `moves` (each misplaced block moves once) or `milp`.
 
     Attributes:
-        lower: lower bound on the cost of any plan, proven so far.
-        origin: what proves it: `moves` (each misplaced block moves once) or `milp`.
         details: sizes, horizons and times, for the result.
     """
 
@@ -64,13 +64,8 @@ class FlowSearch:
         self.scope = scope_of(self.instance, self.options)
         self.bound = step_bound(self.scope, self.options)
         self.reaches = reaches_of(self.scope)
-        self.lower, self.origin = 2 * self.bound.moves, "moves"
+        self.log.prove(2 * self.bound.moves, "moves")
         self.details["models"] = []
-
-    @property
-    def proven(self) -> bool:
-        """Whether the best plan so far is proven optimal."""
-        return self.log.cost is not None and self.lower >= self.log.cost
 
     def first_horizon(self) -> int:
         """Return the horizon that plans are looked for with.
@@ -90,7 +85,7 @@ class FlowSearch:
             TooLarge: where the first model cannot be built.
         """
         horizon = self.options.horizon or self.first_horizon()
-        while not self.proven and perf_counter() < self.deadline:
+        while not self.log.proven and perf_counter() < self.deadline:
             try:
                 result = self._solve(horizon)
             except TooLarge as error:
@@ -135,7 +130,7 @@ class FlowSearch:
             seed=self.options.seed,
             start=start,
             on_solution=report,
-            should_stop=lambda: perf_counter() > self.deadline or self.proven,
+            should_stop=lambda: perf_counter() > self.deadline or self.log.proven,
             options={"presolve_rule_off": NO_PROBING},
         )
         if result.vector is not None:
@@ -173,8 +168,7 @@ class FlowSearch:
         most = self.log.cost if self.log.cost is not None else horizon * (1 + len(self.scope.gadget.locations))
         fits = self.bound.fitting_cost(horizon, most) + 1
         proves = fits if result.status == "infeasible" else min(fits, _rounded(result.bound))
-        if proves > self.lower:
-            self.lower, self.origin = proves, "milp"
+        self.log.prove(proves, "milp")
 
 
 def check_gadget_size(instance: Instance, seconds: float = math.inf) -> None:

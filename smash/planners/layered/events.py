@@ -14,6 +14,7 @@ last placement of a block costs at least what the model asks for it. `resting` a
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -106,25 +107,31 @@ class LayeredModel:
     topples: dict[str, Ints]
 
 
-def build_layered(problem: LayeredProblem, options: PlanOptions, horizon: int) -> LayeredModel:
+def build_layered(
+    problem: LayeredProblem, options: PlanOptions, horizon: int, deadline: float = math.inf
+) -> LayeredModel:
     """Build the layered model with unbounded buffers.
 
     Args:
         problem: the moving blocks.
         options: topple or not, and its cap.
         horizon: number of layers.
+        deadline: when to give up [s, clock of `perf_counter`].
+
+    Raises:
+        OutOfTime: where the deadline has passed.
     """
-    return EventsBuilder(problem, options, horizon).build()
+    return EventsBuilder(problem, options, horizon, deadline).build()
 
 
 class EventsBuilder:
     """Builds the rows of `build_layered`, one method a constraint."""
 
-    def __init__(self, problem: LayeredProblem, options: PlanOptions, horizon: int) -> None:
+    def __init__(self, problem: LayeredProblem, options: PlanOptions, horizon: int, deadline: float) -> None:
         self.problem = problem
         self.options = options
         self.horizon = horizon
-        self.milp = MilpBuilder()
+        self.milp = MilpBuilder(deadline)
         count = len(problem.blocks)
         self.edges = {kind: np.full((count, horizon), -1, dtype=np.int64) for kind in KINDS}
         self.topples: dict[str, Ints] = {}

@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 from math import ceil, isfinite
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
 from smash.problem.feasibility import why_infeasible
@@ -17,12 +17,16 @@ if TYPE_CHECKING:
     from smash.planners.layered.events import LayeredProblem
     from smash.planners.milp import Floats, Milp, MilpResult, MilpStatus
 
+Model = TypeVar("Model")
+
 SPARE_SECONDS = 0.05
 """Kept back from the budget for the solver to end and the last plan to be checked."""
 EVENT_SECONDS = 2e-4
 """Generous estimate of the time to build and load the rows of one block in one layer (at one place)."""
 POSITION_SECONDS = 1e-3
 """The same for a position: the solver's presolve, which keeps to no limit, takes most of it."""
+BUILD_SHARE = 0.6
+"""Share of the time left that the building of a model may take: what takes longer is not solved in the rest."""
 BOUND_ORIGIN = "layered relaxation"
 
 
@@ -71,21 +75,23 @@ class _Solve:
     """One solve: the stages, one after the other, until the bound meets the best plan or the budget is spent."""
 
     def __init__(self, instance: Instance, options: SolveOptions, budget: float, log: IncumbentLog) -> None:
-        from smash.planners.layered.events import TRANSFER_COST, LayeredProblem
+        from smash.planners.layered.events import LayeredProblem
 
         self.instance = instance
         self.options = options
         self.log = log
         self.deadline = perf_counter() + budget - min(SPARE_SECONDS, budget / 10) - log.elapsed
         self.problem: LayeredProblem = LayeredProblem.of(instance, options)
-        self.bound = TRANSFER_COST * len(self.problem.placed)
-        self.bound_origin = "each misplaced block moves"
         self.details: dict[str, Any] = {"stages": []}
 
     def run(self) -> PlanResult:
+        from smash.planners.layered.events import TRANSFER_COST
+
         if self.problem.demands.met:
             self.log.offer((), "milp")
-            return self.log.result(lower_bound=0, bound_origin="start")
+            self.log.prove(0, "start")
+            return self.log.result()
+        self.log.prove(TRANSFER_COST * len(self.problem.placed), "each misplaced block moves")
         if self.options.warm_start is not None:
             self._warm_start(self.options.warm_start)
         sound = self.problem.sound_horizon
@@ -96,7 +102,7 @@ class _Solve:
         if all(location is not None for location, _ in self.problem.chains):
             self._resting_stage(max(horizons))
         self._positions(chosen)
-        return self.log.result(lower_bound=self.bound, bound_origin=self.bound_origin, details=self.details)
+        return self.log.result(details=self.details)
 
     def _buildable(self, horizon: int, places: int, seconds_a_cell: float = EVENT_SECONDS) -> bool:
         """Whether a model of so many cells can be built in the time left; says so in the details where not."""
@@ -106,8 +112,20 @@ class _Solve:
         self.details["stages"].append({"horizon": horizon, "skipped": f"{cells} cells take too long to build"})
         return False
 
+    def _built(self, horizon: int, build: Callable[[float], Model]) -> Model | None:
+        """Return what `build` makes, or None where it takes more than its share of the time left."""
+        from smash.planners.milp import OutOfTime
+
+        now = perf_counter()
+        try:
+            return build(now + BUILD_SHARE * (self.deadline - now))
+        except OutOfTime:
+            seconds = round(perf_counter() - now, 4)
+            self.details["stages"].append({"horizon": horizon, "skipped": "took too long to build", "seconds": seconds})
+            return None
+
     def _done(self) -> bool:
-        return (self.log.cost is not None and self.log.cost <= self.bound) or perf_counter() >= self.deadline
+        return self.log.proven or perf_counter() >= self.deadline
 
     def _warm_start(self, name: str) -> None:
         """Take the first plan from another planner, for a tenth of the time left."""
@@ -126,15 +144,16 @@ class _Solve:
 
         if self._done() or not self._buildable(horizon, 1):
             return
-        model = build_layered(self.problem, self.options, horizon)
+        model = self._built(horizon, partial(build_layered, self.problem, self.options, horizon))
+        if model is None:
+            return
 
         def decode(vector: Floats) -> Sequence[Action] | None:
             return Packing(self.instance, self.problem, read_events(model, vector)).actions()
 
         result = self._run(horizon, "unbounded", model.milp, decode)
         if proves and isfinite(result.bound):
-            self.bound = max(self.bound, ceil(result.bound - 1e-6))
-            self.bound_origin = BOUND_ORIGIN
+            self.log.prove(ceil(result.bound - 1e-6), BOUND_ORIGIN)
 
     def _resting_stage(self, horizon: int) -> None:
         """The locations that there are, each block moved at most twice."""
@@ -144,7 +163,11 @@ class _Solve:
         if self._done() or not self._buildable(horizon, len(self.instance.locations)):
             return
         most = None if self.log.cost is None else self.log.cost - 1
-        model = build_resting(self.instance, self.problem, self.options, horizon, self.bound, most)
+        bound = self.log.bound or 0
+        build = partial(build_resting, self.instance, self.problem, self.options, horizon, bound, most)
+        model = self._built(horizon, build)
+        if model is None:
+            return
 
         def decode(vector: Floats) -> Sequence[Action] | None:
             events = read_resting(model, self.instance.locations, vector)
@@ -192,8 +215,8 @@ class _Solve:
             if status not in ("optimal", "infeasible") or chosen is not None:
                 return
             if enough is not None and horizon >= enough and self.log.cost is not None:
-                self.bound = self.log.cost  # no cheaper plan has more layers, and none was left at this horizon
-                self.bound_origin = f"layered positions at a horizon of {horizon}"
+                # No cheaper plan has more layers, and none was left at this horizon.
+                self.log.prove(self.log.cost, f"layered positions at a horizon of {horizon}")
                 return
             horizon += max(2, horizon // 4)
 
@@ -213,6 +236,10 @@ class _Solve:
         from smash.planners.layered.positions import build_positions, read_positions
 
         demands, best = self.problem.demands, self.log.cost
-        model = build_positions(self.instance, demands, self.options, horizon, self.bound, best)
+        bound = self.log.bound or 0
+        build = partial(build_positions, self.instance, demands, self.options, horizon, bound, best)
+        model = self._built(horizon, build)
+        if model is None:
+            return "unknown"
         decode = partial(read_positions, self.instance, model)
         return self._run(horizon, "positions", model.milp, decode).status

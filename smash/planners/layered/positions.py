@@ -7,6 +7,7 @@ takes part in one action a layer, so that a removal or a placement below a top i
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,7 +38,13 @@ class PositionsModel:
 
 
 def build_positions(
-    instance: Instance, demands: Demands, options: PlanOptions, horizon: int, lower_bound: int, upper_bound: int | None
+    instance: Instance,
+    demands: Demands,
+    options: PlanOptions,
+    horizon: int,
+    lower_bound: int,
+    upper_bound: int | None,
+    deadline: float = math.inf,
 ) -> PositionsModel:
     """Build the model.
 
@@ -48,12 +55,18 @@ def build_positions(
         horizon: number of layers.
         lower_bound: a proven bound on the cost of every plan, as a row.
         upper_bound: only plans cheaper than this are of interest (None: all are).
+        deadline: when to give up [s, clock of `perf_counter`].
+
+    Raises:
+        OutOfTime: where the deadline has passed.
     """
-    return _Builder(instance, demands, options, horizon).build(lower_bound, upper_bound)
+    return _Builder(instance, demands, options, horizon, deadline).build(lower_bound, upper_bound)
 
 
 class _Builder:
-    def __init__(self, instance: Instance, demands: Demands, options: PlanOptions, horizon: int) -> None:
+    def __init__(
+        self, instance: Instance, demands: Demands, options: PlanOptions, horizon: int, deadline: float
+    ) -> None:
         self.instance = instance
         self.options = options
         self.horizon = horizon
@@ -65,7 +78,7 @@ class _Builder:
         self.number = {block: index for index, block in enumerate(self.blocks)}
         self.lying = [self.number[block] for block in lying]
         self.demands = demands
-        self.milp = MilpBuilder()
+        self.milp = MilpBuilder(deadline)
 
     def build(self, lower_bound: int, upper_bound: int | None) -> PositionsModel:
         n, places, layers = len(self.blocks), len(self.instance.locations), self.horizon

@@ -7,6 +7,7 @@ that move a block more than twice are not in this model, so that it gives plans 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,7 +29,13 @@ class RestingModel:
 
 
 def build_resting(
-    instance: Instance, problem: LayeredProblem, options: PlanOptions, horizon: int, lower_bound: int, most: int | None
+    instance: Instance,
+    problem: LayeredProblem,
+    options: PlanOptions,
+    horizon: int,
+    lower_bound: int,
+    most: int | None,
+    deadline: float = math.inf,
 ) -> RestingModel:
     """Build the model.
 
@@ -39,8 +46,12 @@ def build_resting(
         horizon: number of layers.
         lower_bound: a proven bound on the cost of every plan, as a row.
         most: plans above this cost are of no interest (None: all are).
+        deadline: when to give up [s, clock of `perf_counter`].
+
+    Raises:
+        OutOfTime: where the deadline has passed.
     """
-    builder = _RestingBuilder(instance, problem, options, horizon, lower_bound, most)
+    builder = _RestingBuilder(instance, problem, options, horizon, lower_bound, most, deadline)
     layered = builder.build()
     return RestingModel(layered, builder.comes)
 
@@ -54,8 +65,9 @@ class _RestingBuilder(EventsBuilder):
         horizon: int,
         lower_bound: int,
         most: int | None,
+        deadline: float,
     ) -> None:
-        super().__init__(problem, options, horizon)
+        super().__init__(problem, options, horizon, deadline)
         self.locations = instance.locations
         self.bounds = (lower_bound, np.inf if most is None else most)
 

@@ -50,6 +50,7 @@ def precedence_bound(
     on_plan: Callable[[Sequence[Action]], object] | None = None,
     threads: int = 1,
     on_no_plan: Callable[[], object] | None = None,
+    on_bound: Callable[[int], object] | None = None,
 ) -> PrecedenceBound:
     """Bound the cost of every plan from below, and look for a plan that meets the bound.
 
@@ -63,10 +64,13 @@ def precedence_bound(
         on_plan: called with every better plan at once.
         threads: the solver's threads.
         on_no_plan: called once, as soon as the first choices do not fit the locations there are.
+        on_bound: called at once with the first bound and every better one.
     """
     graph = build_graph(instance, options)
     plans = _Plans(instance, options, graph, deadline, on_plan, on_no_plan)
-    solver = HittingSetSolver(graph, threads)
+    tell = on_bound or (lambda bound: None)
+    tell(graph.base_cost)
+    solver = HittingSetSolver(graph, threads, lambda bound: tell(graph.base_cost + bound))
     plans.offer(solver.start(deadline), 0.1)
     found = solver.solve(deadline - plans.reserve, plans.offer)
     plans.offer(found.chosen, 1.0)

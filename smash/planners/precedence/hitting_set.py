@@ -46,10 +46,16 @@ class HittingSet:
 
 
 class HittingSetSolver:
-    """Branch-and-cut for one graph; `solve` may be stopped at any time and then returns a valid bound."""
+    """Branch-and-cut for one graph; `solve` may be stopped at any time and then returns a valid bound.
 
-    def __init__(self, graph: PrecedenceGraph, threads: int = 1) -> None:
+    `on_bound` is called at once with every better bound.
+    """
+
+    def __init__(
+        self, graph: PrecedenceGraph, threads: int = 1, on_bound: Callable[[int], object] | None = None
+    ) -> None:
         self.graph = graph
+        self._on_bound = on_bound
         self.finder = CycleFinder(graph)
         self._order = EventOrder(graph)
         self._costs = graph.costs
@@ -103,7 +109,10 @@ class HittingSetSolver:
 
     def _raise_bound(self, value: float) -> None:
         units = math.ceil(value / self._unit - TOLERANCE)
-        self.state.bound = max(self.state.bound, units * self._unit)
+        if units * self._unit > self.state.bound:
+            self.state.bound = units * self._unit
+            if self._on_bound is not None:
+                self._on_bound(self.state.bound)
 
     def _new_model(self) -> highspy.Highs:
         model = highspy.Highs()

@@ -58,6 +58,7 @@ class PrecedencePlanner(BasePlanner):
             lambda actions: log.offer(actions, "exact"),
             options.threads,
             fall_back,
+            lambda bound: log.prove(bound, ORIGIN),
         )
         details: dict[str, Any] = {
             "choices": len(found.graph.choices),
@@ -70,7 +71,7 @@ class PrecedencePlanner(BasePlanner):
                 f"no plan of cost {found.relaxed_cost} found with {len(instance.buffers)} buffers; "
                 "the value is a lower bound"
             )
-        return log.result(lower_bound=found.bound, bound_origin=ORIGIN, details=details)
+        return log.result(details=details)
 
 
 def _greedy_plans(instance: Instance, options: SolveOptions, seconds: float) -> Iterator[Sequence[Action]]:
