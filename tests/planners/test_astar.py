@@ -72,6 +72,13 @@ def test_six_blocks_without_buffers_are_proven(topple):
         assert AStarPlanner().solve(bare, SolveOptions(topple), 30).status == "optimal"
 
 
+def test_the_plan_of_a_solved_start_is_found_where_the_machine_code_is_there_at_once(monkeypatch):
+    monkeypatch.setattr(driver._Compiler, "started", lambda: True)
+    monkeypatch.setattr(driver._Compiler, "code", lambda deadline: driver.INTERPRETED)
+    instance = make_instance(name="none", blocks=[], stacks=["s1"], start={}, goal=StacksGoal({}))
+    assert searched(instance, PlanOptions(), LOOSE)[2] == []
+
+
 @pytest.mark.slow
 def test_compiled_and_interpreted_search_expand_the_same_nodes(monkeypatch):
     monkeypatch.setattr(driver, "WORK", {False: 1, True: 1})

@@ -140,7 +140,9 @@ class StateSearch:
         code = _Compiler.code(deadline)
         if code is None:
             return False
-        upper = self._engine.counter(UPPER)
+        # A plan that filing the start gave, and that nobody has heard of, is to be found again.
+        unheard = self._engine.counter(BEST) != self._engine.reported
+        upper = self._engine.counter(UPPER) + unheard
         self._engine = _Engine(self._engine.setting, code, True)
         self._engine.open(FIRST_NODES, self.lower_bound, upper)
         return True
