@@ -30,7 +30,7 @@ lint: $(STAMP) ## ruff and mypy, both strict
 suites: $(STAMP) ## make the committed instance sets again, byte for byte
 	$(BIN)/python -m smash.problem.make_suites
 
-ablation: $(STAMP) ## the paper's budget x buffer heatmaps on a stated subset (at most 20 minutes on 2 cores)
+ablation: $(STAMP) ## the paper's budget x buffer heatmaps on a stated subset (about 12 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/ablation.toml --out runs/ablation
 	$(BIN)/python -m analysis.ablation runs/ablation
 

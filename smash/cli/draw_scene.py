@@ -17,7 +17,7 @@ from smash.cli import fail
     "--buffer-height", type=click.IntRange(1, 20), default=4, show_default=True, metavar="N", help="Full buffers."
 )
 def command(scene: Path | None, out: Path | None, height: int, buffer_height: int) -> None:
-    r"""Draw a scene file (default: the built-in scene) and check the paper's two conditions; exit 3 where one fails.
+    """Draw a scene file (default: the built-in scene) and check the paper's two conditions; exit 3 where one fails.
 
     \b
     Example:

@@ -39,7 +39,7 @@ SECONDS_AN_EPISODE = 12.0
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="At a time.")
 @click.option("--dry-run", is_flag=True, help="Say how many episodes are left and how long they take at a guess.")
 def command(results: Path, seeds: int, policies: tuple[str, ...], scene: Path | None, jobs: int, dry_run: bool) -> None:
-    r"""Carry out every plan in RESULTS/runs.jsonl and record each episode as one line of RESULTS/episodes.jsonl.
+    """Carry out every plan in RESULTS/runs.jsonl and record each episode as one line of RESULTS/episodes.jsonl.
 
     It may be stopped or killed at any moment: start it again and it does what is left.
 

@@ -19,7 +19,7 @@ import click
 @click.option("--scene", type=click.Path(path_type=Path), help="Scene file (default: the built-in scene).")
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=Path("runs/topple-map"))
 def command(highest_cut: int, most: int, seeds: int, scene: Path | None, out: Path) -> None:
-    r"""Topple piles of up to 9 blocks in simulation; write trials.jsonl, estimates.json and map.png to OUT.
+    """Topple piles of up to 9 blocks in simulation; write trials.jsonl, estimates.json and map.png to OUT.
 
     It may be stopped at any moment: start it again and it does the trials that are left.
 
