@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
-.PHONY: help test test-slow lint suites ablation ablation-full compare compare-full scaling tables tables-full topple-map
+.PHONY: help test test-slow lint suites ablation ablation-full bench scaling compare compare-full tables tables-full topple-map
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -52,6 +52,10 @@ tables-full: $(STAMP) ## both tables whole: 20 instances a setting, 3 physics se
 
 topple-map: $(STAMP) ## where toppled blocks land, per cut height and number (minutes)
 	$(BIN)/python -m smash topple-map --out runs/topple-map
+
+bench: $(STAMP) ## first plans, proofs, HiGHS against Gurobi, hundreds of blocks: the README's tables (3 minutes)
+	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt gurobipy
+	$(BIN)/python -m smash.experiments.benchmark
 
 scaling: $(STAMP) ## time over 4 to 1,000 blocks, per planner: curves and exponents (hours; it can be resumed)
 	$(BIN)/smash scaling --out runs/scaling
