@@ -82,7 +82,11 @@ def _panels(records: list[Record], draw: Any, words: str) -> Figure:
     suites, variants = _distinct(records, "suite"), _distinct(records, "variant")
     labels = _distinct(records, "label")
     styles = {
-        label: {"color": COLOURS[i % len(COLOURS)], "linestyle": DASHES[i % len(DASHES)], "lw": 1.7}
+        label: {
+            "color": COLOURS[i % len(COLOURS)],
+            "linestyle": DASHES[(i + i // len(COLOURS)) % len(DASHES)],
+            "lw": 1.7,
+        }
         for i, label in enumerate(labels)
     }
     figure = Figure(figsize=(3.4 * len(variants) + 1.6, 2.5 * len(suites) + 0.5), layout="constrained")
