@@ -13,7 +13,6 @@ from smash.planners.line import line_steps
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
 from smash.planners.shorten import shorten
 from smash.planners.targets import Piles, target_piles
-from smash.problem.feasibility import why_infeasible
 from smash.problem.model import Instance, PlanOptions, State
 from smash.problem.rules import Law
 
@@ -37,9 +36,9 @@ class GreedyPlanner(BasePlanner):
     ) -> PlanResult:
         """Plan at once; improve for some passes, within `budget` seconds."""
         log = IncumbentLog(instance, options, on_incumbent, gentle=True)
-        reason = why_infeasible(instance, options)
-        if reason is not None:
-            return log.result(infeasible=True, bound_origin="feasibility", details={"reason": reason})
+        impossible = log.without_plan()
+        if impossible is not None:
+            return impossible
         problem = Indexed.of(instance)
         for steps in greedy_steps(problem, options, perf_counter() + budget, options.seed):
             log.offer(problem.actions(steps), "greedy")

@@ -10,7 +10,6 @@ from smash.planners.astar import StateSearch
 from smash.planners.greedy import greedy_steps
 from smash.planners.indexed import Indexed
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, Relay, SolveOptions
-from smash.problem.feasibility import why_infeasible
 from smash.problem.model import Instance
 
 SPARE_SECONDS = 0.05
@@ -45,9 +44,9 @@ class SmashPlanner(BasePlanner):
     ) -> PlanResult:
         """Plan for at most `budget` seconds of wall time; ends as soon as the best plan is proven optimal."""
         log = IncumbentLog(instance, options, on_incumbent, gentle=True)
-        reason = why_infeasible(instance, options)
-        if reason is not None:
-            return log.result(infeasible=True, bound_origin="feasibility", details={"reason": reason})
+        impossible = log.without_plan()
+        if impossible is not None:
+            return impossible
         return _Combined(instance, options, budget, log).run()
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from time import perf_counter
 from typing import Any, ClassVar, Literal, Protocol, runtime_checkable
 
+from smash.problem.feasibility import why_infeasible
 from smash.problem.model import Action, Instance, PlanOptions
 from smash.problem.plan import Incumbent, Plan, Status
 from smash.problem.rules import Law
@@ -142,6 +143,7 @@ class IncumbentLog:
         """
         self._started = perf_counter()
         self._instance = instance
+        self._options = options
         self._law = Law(instance, options)
         self._report = on_incumbent
         self._report_bound = getattr(on_incumbent, "bound", None)
@@ -212,6 +214,13 @@ class IncumbentLog:
             if self._law.check(softened).accepted:
                 return softened
         return tuple(actions)
+
+    def without_plan(self) -> PlanResult | None:
+        """Return the result where start and goal alone show that no plan exists, or None."""
+        reason = why_infeasible(self._instance, self._options)
+        if reason is None:
+            return None
+        return self.result(infeasible=True, bound_origin="feasibility", details={"reason": reason})
 
     def result(
         self,

@@ -9,7 +9,6 @@ from smash.planners.astar.driver import StateSearch
 from smash.planners.greedy import greedy_steps
 from smash.planners.indexed import Indexed
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
-from smash.problem.feasibility import why_infeasible
 from smash.problem.model import Instance
 
 
@@ -29,9 +28,9 @@ class AStarPlanner(BasePlanner):
         """Search for at most `budget` seconds; where memory or time ends, the bound proven so far is reported."""
         log = IncumbentLog(instance, options, on_incumbent, gentle=True)
         deadline = perf_counter() + budget
-        reason = why_infeasible(instance, options)
-        if reason is not None:
-            return log.result(infeasible=True, bound_origin="feasibility", details={"reason": reason})
+        impossible = log.without_plan()
+        if impossible is not None:
+            return impossible
         problem = Indexed.of(instance)
         for steps in greedy_steps(problem, options, perf_counter() + budget / 10, options.seed):
             log.offer(problem.actions(steps), "greedy")

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, ClassVar
 
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
 from smash.problem.errors import MalformedFile
-from smash.problem.feasibility import why_infeasible
 from smash.problem.model import Action, Instance, State
 from smash.problem.rules import Law
 
@@ -53,8 +52,9 @@ class FlowPlanner(BasePlanner):
             log.offer((), "milp")
             log.prove(0, "start")
             return log.result()
-        if why_infeasible(instance, options) is not None:
-            return log.result(infeasible=True, bound_origin="feasibility")
+        impossible = log.without_plan()
+        if impossible is not None:
+            return impossible
         if options.warm_start is not None:
             self._warm(options.warm_start, instance, options, log, WARM_SHARE * budget)
         from smash.planners.flow.search import FlowSearch, TooLarge

@@ -20,8 +20,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from smash.planners.demands import Demands, demands_of
 from smash.planners.milp import Floats, Ints, Milp, MilpBuilder
-from smash.planners.precedence.demands import Demands, demands_of
 from smash.problem.model import Instance, PlanOptions
 
 TRANSFER_COST = 2

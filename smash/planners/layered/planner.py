@@ -10,7 +10,6 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
-from smash.problem.feasibility import why_infeasible
 from smash.problem.model import Action, Instance
 
 if TYPE_CHECKING:
@@ -58,9 +57,9 @@ class LayeredPlanner(BasePlanner):
     ) -> PlanResult:
         """Plan for at most `budget` seconds of wall time."""
         log = IncumbentLog(instance, options, on_incumbent, gentle=True)
-        reason = why_infeasible(instance, options)
-        if reason is not None:
-            return log.result(infeasible=True, bound_origin="feasibility", details={"reason": reason})
+        impossible = log.without_plan()
+        if impossible is not None:
+            return impossible
         return _Solve(instance, options, budget, log).run()
 
     def build_model(self, instance: Instance, options: SolveOptions) -> Milp:

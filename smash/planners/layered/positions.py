@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from smash.planners.demands import Demands
 from smash.planners.layered.events import TOPPLE_COST, TRANSFER_COST
 from smash.planners.milp import Floats, Ints, Milp, MilpBuilder
-from smash.planners.precedence.demands import Demands
 from smash.problem.model import TABLE, Action, Instance, OnGoal, Pick, Place, PlanOptions, State, Topple
 
 

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from smash.planners.precedence.demands import Demands, demands_of
+from smash.planners.demands import Demands, demands_of
 from smash.problem.model import Instance, PlanOptions
 
 Floats = npt.NDArray[np.float64]

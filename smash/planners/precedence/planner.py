@@ -7,7 +7,6 @@ from time import perf_counter
 from typing import Any, ClassVar
 
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
-from smash.problem.feasibility import why_infeasible
 from smash.problem.model import Action, Instance
 
 SPARE_SECONDS = 0.05
@@ -42,9 +41,9 @@ class PrecedencePlanner(BasePlanner):
         """Plan for at most `budget` seconds of wall time."""
         deadline = perf_counter() + budget - min(SPARE_SECONDS, budget / 10)
         log = IncumbentLog(instance, options, on_incumbent, gentle=True)
-        reason = why_infeasible(instance, options)
-        if reason is not None:
-            return log.result(infeasible=True, bound_origin="feasibility", details={"reason": reason})
+        impossible = log.without_plan()
+        if impossible is not None:
+            return impossible
         from smash.planners.precedence.bound import ORIGIN, precedence_bound
 
         def fall_back() -> None:

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
 
-from smash.planners.precedence.demands import Demands, Pile
+from smash.planners.demands import Demands, Pile
 from smash.planners.precedence.graph import Choice
 from smash.problem.model import TABLE, Action, Instance, OnGoal, Pick, Place, Topple
 
