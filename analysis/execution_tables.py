@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,7 @@ import pandas as pd
 
 from analysis.cells import wilson
 from analysis.paper_tables import METRICS, PAPER, SIZES, Metric
-from analysis.records import NoRecords
+from analysis.records import NoRecords, read_lines
 from analysis.tables import markdown, mean_std
 
 FORMAT = "smash-episode-run/1"
@@ -35,19 +34,7 @@ def read_episodes(results: Path) -> pd.DataFrame:
         NoRecords: where there are none.
     """
     path = results / "episodes.jsonl"
-    try:
-        lines = path.read_bytes().splitlines()
-    except OSError as error:
-        raise NoRecords(f"{path}: cannot be read: {error.strerror}") from None
-    rows = []
-    for number, line in enumerate(lines, start=1):
-        try:
-            record = json.loads(line)
-        except ValueError:
-            if number == len(lines):
-                break
-            raise NoRecords(f"{path}:{number}: no {FORMAT} object") from None
-        rows.append(_row(record))
+    rows = [_row(record) for record in read_lines(path, FORMAT)]
     if not rows:
         raise NoRecords(f"{path}: no finished episode")
     return pd.DataFrame(rows)

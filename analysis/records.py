@@ -21,7 +21,18 @@ def read_records(results: Path) -> list[dict[str, Any]]:
     Raises:
         NoRecords: where there are none, or a line before the last is damaged.
     """
-    path = results / "runs.jsonl"
+    records = read_lines(results / "runs.jsonl", RUN_FORMAT)
+    if not records:
+        raise NoRecords(f"{results / 'runs.jsonl'}: no finished run")
+    return records
+
+
+def read_lines(path: Path, wanted: str) -> list[dict[str, Any]]:
+    """Return the objects of a file of JSON lines; a damaged last line (a kill's trace) is left out.
+
+    Raises:
+        NoRecords: where the file cannot be read, a line before the last is damaged, or an object has another format.
+    """
     try:
         lines = path.read_bytes().splitlines()
     except OSError as error:
@@ -30,15 +41,13 @@ def read_records(results: Path) -> list[dict[str, Any]]:
     for number, line in enumerate(lines, start=1):
         try:
             record = json.loads(line)
-            if record["format"] != RUN_FORMAT:
-                raise NoRecords(f"{path}:{number}: format {record['format']!r}, not {RUN_FORMAT!r}")
+            if record["format"] != wanted:
+                raise NoRecords(f"{path}:{number}: format {record['format']!r}, not {wanted!r}")
         except (ValueError, TypeError, KeyError):
             if number == len(lines):
                 break
-            raise NoRecords(f"{path}:{number}: no {RUN_FORMAT} object") from None
+            raise NoRecords(f"{path}:{number}: no {wanted} object") from None
         records.append(record)
-    if not records:
-        raise NoRecords(f"{path}: no finished run")
     return records
 
 
