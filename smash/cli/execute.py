@@ -64,7 +64,8 @@ def command(
     tabletop.bind(problem)
     from smash.execution.capture import Capture
     from smash.execution.episode import episode_text
-    from smash.execution.executor import OPEN, Executor
+    from smash.execution.executor import Executor
+    from smash.execution.policy import OPEN
     from smash.experiments.replanning import replanner as make_replanner
 
     capture = Capture(replay=replay, video=video, stills=stills, trajectory=trajectory)

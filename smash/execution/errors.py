@@ -1,4 +1,4 @@
-"""Why an execution fails: one family, each member with the failure's name (issue names: IK, no motion, slip, ...)."""
+"""Why an execution fails: one family, each member with the failure's name."""
 
 from __future__ import annotations
 
@@ -24,3 +24,27 @@ class NoMotion(ExecutionFailure):
     """No collision-free motion was found; the message says what is in the way where that is known."""
 
     failure = "no motion"
+
+
+class Slip(ExecutionFailure):
+    """The block is not, or no longer, between the fingers."""
+
+    failure = "slip"
+
+
+class Fell(ExecutionFailure):
+    """A block stands elsewhere than the action leaves it: a pile fell, or a topple took other blocks than it should."""
+
+    failure = "fell"
+
+
+class OutOfReach(ExecutionFailure):
+    """A toppled block lies where the arm cannot grasp it from above."""
+
+    failure = "out of reach"
+
+
+class NotAtGoal(ExecutionFailure):
+    """All actions were carried out, and the settled blocks do not fulfil the goal."""
+
+    failure = "not at goal"

@@ -15,7 +15,7 @@ import numpy as np
 
 from smash.execution.block_pose import BlockPose
 from smash.execution.errors import ExecutionFailure
-from smash.execution.executor import carry_out
+from smash.execution.performing import carry_out
 from smash.execution.pushes import strip, topple
 from smash.execution.readback import read_state
 from smash.execution.robot import READY

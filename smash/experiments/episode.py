@@ -6,7 +6,8 @@ import json
 import sys
 
 from smash.execution.episode import episode_text
-from smash.execution.executor import OPEN, Executor
+from smash.execution.executor import Executor
+from smash.execution.policy import OPEN
 from smash.execution.scene_file import default_scene, read_scene
 from smash.experiments.episodes import REPLAN_BUDGET
 from smash.experiments.replanning import replanner

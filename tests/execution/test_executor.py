@@ -3,7 +3,8 @@ import dataclasses
 import pytest
 
 from smash.execution.episode import episode_text
-from smash.execution.executor import OPEN, Executor, observed_instance
+from smash.execution.executor import Executor, observed_instance
+from smash.execution.policy import OPEN
 from smash.execution.recording import Recording
 from smash.execution.scene_file import default_scene
 from smash.execution.tabletop import Friction

@@ -1,0 +1,157 @@
+"""One action in the simulated world: its planned motions, or new ones where the scene asks for them, and their check.
+
+The law's view of the world is read here too (`observe`): what stands where, what lies in the table region, and which
+block is in the hand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import hypot
+from time import perf_counter
+
+import numpy as np
+
+from smash.execution.episode import Performed
+from smash.execution.errors import ExecutionFailure, NoIk, OutOfReach, Slip
+from smash.execution.grounding import Grounder, Task
+from smash.execution.policy import Policy
+from smash.execution.readback import read_state
+from smash.execution.robot import panda
+from smash.execution.steps import OPEN_SECONDS, OPENINGS, Grip, Move, Segment
+from smash.execution.tabletop import Slot
+from smash.execution.world import World
+from smash.problem.model import TABLE, Pick, Place, State, Topple
+
+GRASPED_WITHIN = 0.5
+"""A held block's centre is within this share of its side of the tool."""
+MOVED = 0.004
+"""A block this far from where a motion was planned for [m] needs a new one."""
+SCENE_ALLOWANCE = 0.006
+"""Motions planned offline may come this much closer to revealed blocks than planned [m]."""
+PAUSE = 0.05
+"""Standing still between two motions, for the arm to catch up [s]."""
+
+
+class Performer:
+    """The arm, the hand and the eyes of one episode.
+
+    Args:
+        world: Where it happens.
+        grounder: Plans motions.
+        slots: The slot of every location.
+        policy: What to do about failures.
+
+    Attributes:
+        hand: The block between the fingers, or none.
+        retries: How many picks were tried again.
+    """
+
+    def __init__(self, world: World, grounder: Grounder, slots: Mapping[str, Slot], policy: Policy) -> None:
+        self.world = world
+        self.grounder = grounder
+        self.slots = slots
+        self.policy = policy
+        self.side = world.tabletop.side
+        self.hand: str | None = None
+        self.retries = 0
+
+    def observe(self) -> State:
+        """The law's state in the scene as it is."""
+        return read_state(self.world.poses(), self.slots, self.side, self.hand)
+
+    def perform(self, task: Task, row: Performed, state: State) -> None:
+        """Perform an action, a pick several times where it fails.
+
+        Args:
+            task: The action and what is planned of it.
+            row: Gets attempts, repairs and the time of planning online.
+            state: The law's state before it.
+
+        Raises:
+            ExecutionFailure: where it cannot be done.
+        """
+        tries = 1 + (self.policy.retries if isinstance(task.action, Pick) else 0)
+        for attempt in range(1, tries + 1):
+            row.attempts = attempt
+            try:
+                self._try(task if attempt == 1 else Task(task.action, None), row, state)
+                return
+            except ExecutionFailure:
+                if attempt == tries:
+                    raise
+                self.retries += 1
+                self.world.settle()
+
+    def _try(self, task: Task, row: Performed, state: State) -> None:
+        segments = task.segments
+        if segments is None or not self._usable(task):
+            row.repaired = row.repaired or segments is not None
+            begun = perf_counter()
+            try:
+                segments = self._plan_online(task, state)
+            finally:
+                row.times.online += perf_counter() - begun
+        match task.action:
+            case Pick(block, _):
+                carry_out(self.world, segments)
+                self._require_grasp(block)
+                self.hand = block
+            case Place(block, target):
+                carry_out(self.world, segments)
+                self.hand = None
+                self.world.wait(PAUSE)
+                if self.observe().piles[target][-1:] != [block]:
+                    raise Slip(f"block {block!r} does not stand on {target!r} after it was let go")
+            case Topple():
+                carry_out(self.world, segments)
+                self.world.settle()
+
+    def _plan_online(self, task: Task, state: State) -> list[Segment]:
+        """Plan an action from the observed scene and the arm's present state."""
+        poses, joints = self.world.poses(), self.world.commanded()
+        try:
+            try:
+                again = self.grounder.task(task.action, state.piles, poses, joints, task.approach)
+            except ExecutionFailure:
+                if task.approach is None:
+                    raise
+                again = self.grounder.task(task.action, state.piles, poses, joints)
+        except NoIk as problem:
+            if isinstance(task.action, Pick) and task.action.source == TABLE:
+                raise OutOfReach(f"block {task.action.block!r}: {problem}") from None
+            raise
+        return again.segments or []
+
+    def _usable(self, task: Task) -> bool:
+        """Whether a motion planned earlier starts where the arm is, and fits the scene (if the policy looks at it)."""
+        moves = [segment for segment in task.segments or () if isinstance(segment, Move)]
+        if moves and np.abs(moves[0].path.start - self.world.commanded()).max() > 1e-6:
+            return False
+        if not self.policy.repair:
+            return True
+        poses = self.world.poses()
+        if isinstance(task.action, Pick) and moves:
+            tool = panda().forward(moves[-2].path.end).position
+            if hypot(*(poses[task.action.block].position - tool)[:2]) > MOVED:
+                return False
+        scene = self.grounder.steps.scene(poses)
+        return all(move.free(scene, SCENE_ALLOWANCE) for move in moves)
+
+    def _require_grasp(self, block: str) -> None:
+        """Raise `Slip`, the hand opened, unless the block is between the fingers."""
+        away = float(np.linalg.norm(self.world.pose(block).position - self.world.tool_position()))
+        if away < GRASPED_WITHIN * self.side:
+            return
+        self.world.grip(self.side / 2 + OPENINGS[0], OPEN_SECONDS)
+        raise Slip(f"block {block!r} is {away * 100:.1f} cm from the fingers after the grasp")
+
+
+def carry_out(world: World, segments: Sequence[Segment]) -> None:
+    """Let the simulated arm and fingers do what was planned."""
+    for segment in segments:
+        if isinstance(segment, Grip):
+            world.grip(segment.opening, segment.seconds)
+        else:
+            world.follow(segment.trajectory, segment.opening)
+            world.wait(PAUSE)
