@@ -1,7 +1,10 @@
 """Graded instances beyond the paper's benchmarks: the committed `open-*` sets.
 
 Each family asks for one thing that the paper's sizes do not: few buffers at more blocks, wide tables with
-hundreds of blocks, partial `on` goals of the classical blocks world, starts with blocks already toppled.
+hundreds of blocks, partial `on` goals of the classical blocks world, starts with blocks already toppled, many
+short stacks (where it is hard to say which of them to topple). Caps on a topple are variants of every instance.
+The sizes of a family go from those that are solved in a moment to those that nobody has solved yet:
+`smash best-known` keeps the list.
 """
 
 from __future__ import annotations
@@ -48,6 +51,10 @@ FAMILIES: dict[str, tuple[Shape, ...]] = {
         Shape(blocks, 4, buffers, "positions", 0.4, toppled)
         for blocks in (15, 30, 60)
         for buffers, toppled in ((1, 0.0), (4, 0.3))
+    ),
+    "open-short-stacks": (
+        *(Shape(blocks, blocks // 3, 0, "on", listed) for blocks in (30, 45, 60, 120) for listed in (0.3, 0.5)),
+        *(Shape(blocks, 2 * blocks // 5, 0) for blocks in (100, 200, 300, 500)),
     ),
 }
 """Set name -> the shapes of its instances, in the order of their numbers."""
