@@ -15,6 +15,7 @@ import pandas as pd
 
 from analysis.conditions import conditions
 from analysis.curves import anytime_figure, coverage_figure
+from analysis.metrics import PREFIX, metric_names
 from analysis.records import NoRecords, read_records, runs_table
 from analysis.tables import markdown, mean_std, median_iqr, share
 
@@ -108,6 +109,7 @@ def _row(mine: pd.DataFrame) -> dict[str, object]:
         "cost, common": f"{mean_std(shared['cost'])} (n={len(shared)})",
         "median cost": median_iqr(mine["cost"], 1),
         "gap to optimum": f"{100 * known.mean():.1f} % (n={len(known)})" if len(known) else "–",
+        **{name: median_iqr(mine[mine["solved"]][PREFIX + name]) for name in metric_names(mine)},
         "memory [MiB]": f"{mine['memory_mib'].median():.0f}" if mine["memory_mib"].notna().any() else "–",
     }
 

@@ -8,6 +8,8 @@ from typing import Any
 
 import pandas as pd
 
+from analysis.metrics import metric_columns
+
 RUN_FORMAT = "smash-run/1"
 
 
@@ -55,7 +57,8 @@ def runs_table(records: list[dict[str, Any]]) -> pd.DataFrame:
     """Return one row a run; nested fields (versions, machine, details, actions) stay in the records.
 
     Columns of the record, and: `first_seconds`, `best_seconds` (time of the first and of the best incumbent,
-    NaN without a plan), `solved` (a plan that the law accepts), `proven` (its status is optimal).
+    NaN without a plan), `solved` (a plan that the law accepts), `proven` (its status is optimal), and `metric.NAME`
+    for every registered metric.
     """
     plain = [{key: value for key, value in record.items() if not isinstance(value, (dict, list))} for record in records]
     table = pd.DataFrame(plain)
@@ -66,6 +69,8 @@ def runs_table(records: list[dict[str, Any]]) -> pd.DataFrame:
     table["proven"] = table["solved"] & (table["status"] == "optimal")
     table["cost"] = [trace[-1][1] if trace else float("nan") for trace in traces]
     table["commit"] = [(record.get("commit") or {}).get("hash") for record in records]
+    for name, values in metric_columns(records).items():
+        table[name] = values
     return table
 
 

@@ -36,6 +36,10 @@ class AriesPlanner(EnginePlanner):
                 return "install up-aries and unified-planning (extra `pddl`)"
         return None
 
+    def takes_conditional_effects(self) -> bool:
+        """Return whether it takes encodings with conditional effects: its server stops at them."""
+        return False
+
     def run(self, run: Run) -> Outcome:
         """Run the worker and take its plans as they come."""
         run.task.write(run.directory)

@@ -39,6 +39,10 @@ class DownwardPlanner(EnginePlanner):
         engine = self.configuration.engine
         return None if engine.root is not None else f"install {engine.package.replace('_', '-')} (extra `pddl`)"
 
+    def takes_conditional_effects(self) -> bool:
+        """Return whether its search does."""
+        return self.configuration.conditional_effects
+
     def run(self, run: Run) -> Outcome:
         """Translate, then search."""
         domain, problem = run.task.write(run.directory)

@@ -1,41 +1,74 @@
-"""The PDDL domains of `domains/` and which of them says what a problem needs."""
+"""PDDL encodings: the domains of `domains/`, those that others register, and which of them a problem needs."""
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
+from importlib.metadata import entry_points
 from pathlib import Path
 
-from smash.problem.errors import Unsupported
+from smash.problem.errors import SmashError, Unsupported
 from smash.problem.model import Instance, PlanOptions
 
+GROUP = "smash.encodings"
+"""The entry-point group of encodings from outside: a name to an `Encoding`."""
 DOMAINS = Path(__file__).resolve().parents[1] / "domains"
 """The hand-written domains, in the tree and in an installed package alike."""
 
 
 @dataclass(frozen=True, slots=True)
 class Encoding:
-    """One domain of `domains/`: its file without suffix, its PDDL name, and whether topples can be capped in it."""
+    """A way to tell topples in PDDL: a domain, and which of the compiler's facts and steps it knows.
 
-    file: str
+    Every domain has the predicates and the pick and place actions of `domains/pick-and-place.pddl`. A topple is the
+    action `(topple ?b ?under)` or, at height 1, `(topple-base ?b ?l)`, where `?b` is the lowest block that falls;
+    in a `chain` it is `topple-begin`, `topple-drop`, `topple-end`, as in `domains/topple-chain.pddl`.
+
+    Attributes:
+        name: how it is called in records.
+        domain: the domain's PDDL name.
+        text: the domain's PDDL text.
+        topple: whether it can topple at all.
+        chain: whether `(top ?b ?region)` tells stacks from buffers and `(idle)` holds between topples.
+        closure: whether `(above …)` and `(stacked …)` hold at the start, as in `domains/topple-conditional.pddl`.
+        capped: whether it counts the blocks of a topple, from `(cap ?k)` down.
+        with_cap: the encoding that takes its place where `max_topple` binds; None: it cannot say that.
+    """
+
+    name: str
     domain: str
+    text: str
     topple: bool = True
+    chain: bool = False
+    closure: bool = False
     capped: bool = False
+    with_cap: Encoding | None = None
 
     @property
-    def path(self) -> Path:
-        """The domain's file."""
-        return DOMAINS / f"{self.file}.pddl"
-
-    @property
-    def text(self) -> str:
-        """The domain's PDDL text."""
-        return self.path.read_text(encoding="utf-8")
+    def conditional_effects(self) -> bool:
+        """Whether it needs a planner that takes conditional effects (or axioms)."""
+        return re.search(r"\(\s*(when|:derived)\b", re.sub(r";.*", "", self.text)) is not None
 
 
-PICK_AND_PLACE = Encoding("pick-and-place", "smash-pick-and-place", topple=False)
-CONDITIONAL = Encoding("topple-conditional", "smash-topple-conditional")
-CHAIN = Encoding("topple-chain", "smash-topple-chain")
-CHAIN_CAPPED = Encoding("topple-chain-capped", "smash-topple-chain-capped", capped=True)
+class UnknownEncoding(SmashError):
+    """A name that no encoding has; the message lists the valid ones."""
+
+    def __init__(self, name: str, known: list[str]) -> None:
+        self.name = name
+        self.known = known
+        super().__init__(f"no encoding is called {name!r}; known: {', '.join(known)}")
+
+
+def _filed(file: str) -> str:
+    return (DOMAINS / f"{file}.pddl").read_text(encoding="utf-8")
+
+
+PICK_AND_PLACE = Encoding("pick-and-place", "smash-pick-and-place", _filed("pick-and-place"), topple=False)
+CONDITIONAL = Encoding("topple-conditional", "smash-topple-conditional", _filed("topple-conditional"), closure=True)
+CHAIN_CAPPED = Encoding(
+    "topple-chain-capped", "smash-topple-chain-capped", _filed("topple-chain-capped"), chain=True, capped=True
+)
+CHAIN = Encoding("topple-chain", "smash-topple-chain", _filed("topple-chain"), chain=True, with_cap=CHAIN_CAPPED)
 
 ENCODINGS = {
     "pick-and-place": PICK_AND_PLACE,
@@ -45,7 +78,33 @@ ENCODINGS = {
 }
 BY_DOMAIN = {encoding.domain: encoding for encoding in ENCODINGS.values()}
 TOPPLE_ENCODINGS = ("conditional", "chain")
-"""The two ways to say a topple: one action with conditional effects, or a chain of STRIPS actions."""
+"""The two ways of this package to tell a topple: one action with conditional effects, or a chain of STRIPS actions."""
+
+
+def encoding_names() -> list[str]:
+    """Return how topples can be told: the ways of this package, then those that others registered."""
+    return [*TOPPLE_ENCODINGS, *sorted(set(entry_points(group=GROUP).names) - set(TOPPLE_ENCODINGS))]
+
+
+def get_encoding(name: str) -> Encoding:
+    """Return the way to tell topples that is called `name`.
+
+    Raises:
+        UnknownEncoding: where none is called so.
+        Unsupported: where its module cannot be loaded, or holds no `Encoding`.
+    """
+    if name in TOPPLE_ENCODINGS:
+        return ENCODINGS[name]
+    entries = entry_points(group=GROUP, name=name)
+    if not entries:
+        raise UnknownEncoding(name, encoding_names())
+    try:
+        encoding = next(iter(entries)).load()
+    except (ImportError, AttributeError) as error:
+        raise Unsupported(f"encoding {name!r} is not installed: {error}") from None
+    if not isinstance(encoding, Encoding):
+        raise Unsupported(f"encoding {name!r} is no baselines.encodings.Encoding")
+    return encoding
 
 
 def cap_of(instance: Instance, options: PlanOptions) -> int | None:
@@ -55,28 +114,30 @@ def cap_of(instance: Instance, options: PlanOptions) -> int | None:
 
 
 def unsupported_reason(instance: Instance, options: PlanOptions, wanted: str) -> str | None:
-    """Return why the encoding `wanted` (`conditional` or `chain`) cannot say this problem, or None."""
+    """Return why the encoding `wanted` (`conditional`, `chain`, …) cannot say this problem, or None.
+
+    Raises:
+        UnknownEncoding: where none is called so.
+    """
     cap = cap_of(instance, options)
-    if wanted == "conditional" and cap is not None:
-        return (
-            f"the conditional encoding cannot count the blocks of a topple (max_topple {cap}); use the chain encoding"
-        )
+    if cap is not None and get_encoding(wanted).with_cap is None:
+        return f"the {wanted} encoding cannot count the blocks of a topple (max_topple {cap}); use the chain encoding"
     return None
 
 
 def encoding_for(instance: Instance, options: PlanOptions, wanted: str) -> Encoding:
-    """Return the domain for a problem under `options`, topples told in the way `wanted`.
+    """Return the encoding of a problem under `options`, topples told in the way `wanted`.
 
-    Without topple both ways are the same pick-and-place domain.
+    Without topple all ways are the same pick-and-place domain.
 
     Raises:
+        UnknownEncoding: where none is called so.
         Unsupported: where `wanted` cannot say it.
     """
     reason = unsupported_reason(instance, options, wanted)
     if reason is not None:
         raise Unsupported(reason)
+    encoding = get_encoding(wanted)
     if not options.topple:
         return PICK_AND_PLACE
-    if wanted == "conditional":
-        return CONDITIONAL
-    return CHAIN if cap_of(instance, options) is None else CHAIN_CAPPED
+    return encoding if cap_of(instance, options) is None else encoding.with_cap or encoding

@@ -5,12 +5,13 @@ from __future__ import annotations
 import tempfile
 from abc import abstractmethod
 from collections.abc import Iterable
+from copy import copy
 from dataclasses import dataclass, field
 from pathlib import Path
 from time import monotonic
-from typing import Any, ClassVar
+from typing import Any, Self
 
-from baselines.encodings import unsupported_reason
+from baselines.encodings import UnknownEncoding, encoding_names, get_encoding, unsupported_reason
 from baselines.facts import trim_buffers
 from baselines.outcomes import Outcome
 from baselines.process import MEMORY_LIMIT
@@ -50,10 +51,10 @@ class Run:
 class EnginePlanner(BasePlanner):
     """A planner that hands the compiled problem to an engine outside of this process."""
 
-    name: ClassVar[str]
+    name: str
     """The engine's name in incumbents and bounds."""
-    encoding: ClassVar[str]
-    """How topples are told to it: `conditional` or `chain`."""
+    encoding: str
+    """How topples are told to it: `conditional`, `chain`, or an encoding that others registered."""
 
     def __init__(self, memory: int = MEMORY_LIMIT) -> None:
         """Make the planner.
@@ -65,7 +66,28 @@ class EnginePlanner(BasePlanner):
 
     def unsupported(self, instance: Instance, options: SolveOptions) -> str | None:
         """Return why the encoding cannot say the problem, or None."""
-        return unsupported_reason(instance, options, self.encoding)
+        reason = unsupported_reason(instance, options, self.encoding)
+        if reason is not None or not options.topple or self.takes_conditional_effects():
+            return reason
+        if get_encoding(self.encoding).conditional_effects:
+            return f"it takes no conditional effects, which the {self.encoding} encoding has; use the chain encoding"
+        return None
+
+    def with_encoding(self, encoding: str) -> Self:
+        """Return the same planner on another encoding: what `NAME:ENCODING` means.
+
+        Raises:
+            UnknownEncoding: where none is called so.
+        """
+        if encoding not in encoding_names():
+            raise UnknownEncoding(encoding, encoding_names())
+        other = copy(self)
+        other.name, other.encoding = f"{self.name.partition(':')[0]}:{encoding}", encoding
+        return other
+
+    def takes_conditional_effects(self) -> bool:
+        """Return whether it takes encodings with conditional effects."""
+        return True
 
     def solve(
         self,
@@ -89,7 +111,7 @@ class EnginePlanner(BasePlanner):
         task = compile_instance(trim_buffers(instance), options, self.encoding)
         with tempfile.TemporaryDirectory(prefix="smash-", ignore_cleanup_errors=True) as folder:
             run = Run(task, log, self.name, Path(folder), deadline, self.memory)
-            run.details["encoding"] = task.encoding.file
+            run.details["encoding"] = task.encoding.name
             run.details["compile_seconds"] = round(log.elapsed, 4)
             outcome = self.run(run)
         return self._result(run, outcome)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from baselines.encodings import CHAIN, CHAIN_CAPPED, CONDITIONAL, Encoding, cap_of
+from baselines.encodings import Encoding, cap_of
 from baselines.names import Names, count_names
 from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal
 
@@ -42,7 +42,7 @@ def facts_of(instance: Instance, options: PlanOptions, encoding: Encoding, names
     cap = cap_of(instance, options) if encoding.capped else None
     counts = count_names(max(len(instance.buffers), 0 if cap is None else cap - 1))
     start: list[Fact] = [("hand-empty",)]
-    if encoding in (CHAIN, CHAIN_CAPPED):
+    if encoding.chain:
         start.append(("idle",))
     start += _piles(instance, encoding, names)
     start += [("on-table", names.blocks[block]) for block in instance.table]
@@ -72,8 +72,8 @@ def _piles(instance: Instance, encoding: Encoding, names: Names) -> Iterator[Fac
         yield ("bottom", pile[0])
         yield from (("on", upper, under) for under, upper in pairwise(pile))
         region = "buffers" if stack is None else "stacks"
-        yield ("top", pile[-1], region) if encoding in (CHAIN, CHAIN_CAPPED) else ("top", pile[-1])
-        if encoding is CONDITIONAL:
+        yield ("top", pile[-1], region) if encoding.chain else ("top", pile[-1])
+        if encoding.closure:
             yield from (("stacked", block) for block in pile)
             yield from (("above", pile[i], pile[j]) for i in range(len(pile)) for j in range(i))
             if stack is not None:

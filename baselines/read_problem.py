@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
-from baselines.encodings import BY_DOMAIN, CHAIN, CHAIN_CAPPED, Encoding
+from baselines.encodings import BY_DOMAIN, Encoding
 from baselines.facts import Fact, facts_of
 from baselines.names import Names, numbered
 from baselines.task import HEADER, PddlTask
@@ -164,8 +164,7 @@ class _Interpreter:
 
     def _instance(self) -> Instance:
         raw = self.raw
-        chain = raw.encoding in (CHAIN, CHAIN_CAPPED)
-        if ("hand-empty",) not in raw.start or (chain and ("idle",) not in raw.start):
+        if ("hand-empty",) not in raw.start or (raw.encoding.chain and ("idle",) not in raw.start):
             self.refuse("the hand holds a block, or a topple is under way, at the start")
         start = {self.location_of[f[2]]: self._pile(f[1]) for f in raw.start if f[0] == "base"}
         on_buffers = [fact[1] for fact in raw.start if fact[0] == "on-buffer"]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from baselines.encodings import CONDITIONAL, PICK_AND_PLACE
 from baselines.task import PddlTask
 from smash.problem.errors import IllegalAction
 from smash.problem.model import TABLE, Action, Pick, Place, State, Topple
@@ -146,7 +145,7 @@ class _Encoder:
     def _topple(self, location: str, height: int) -> Iterator[Step]:
         pile = [self._block(block) for block in self._piles[location]]
         under = [self._task.names.locations[location], *pile]
-        if self._task.encoding is CONDITIONAL:
+        if not self._task.encoding.chain:
             yield ("topple" if height > 1 else "topple-base", pile[height - 1], under[height - 1])
             return
         for count, index in enumerate(range(len(pile) - 1, height - 2, -1)):
@@ -166,7 +165,7 @@ class _Encoder:
         return (self._counts[left],) if fallen == 0 else (self._counts[left], *self._counts[left - 1 : left])
 
     def _region(self, location: str) -> tuple[str, ...]:
-        if self._task.encoding in (PICK_AND_PLACE, CONDITIONAL):
+        if not self._task.encoding.chain:
             return ()
         return ("stacks" if location in self._task.names.locations else "buffers",)
 

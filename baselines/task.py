@@ -30,7 +30,7 @@ class PddlTask:
 
     @property
     def domain_text(self) -> str:
-        """The domain, as it stands in `domains/`."""
+        """The domain."""
         return self.encoding.text
 
     @property
@@ -57,9 +57,10 @@ class PddlTask:
 
 
 def compile_instance(instance: Instance, options: PlanOptions, wanted: str) -> PddlTask:
-    """Compile an instance; topples are told in the way `wanted` (`conditional` or `chain`).
+    """Compile an instance; topples are told in the way `wanted` (`conditional`, `chain`, …).
 
     Raises:
+        UnknownEncoding: where no encoding is called so.
         Unsupported: where that encoding cannot say the problem.
     """
     encoding = encoding_for(instance, options, wanted)

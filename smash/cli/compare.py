@@ -83,7 +83,8 @@ def _show(comparison: Any, out: Path) -> None:
     table = comparison.comparison_table(runs)
     for setting, part in table.groupby(comparison.GROUP, sort=True):
         suite, blocks, count, variant = setting
-        short = part[["planner", "coverage", "proven", *SHORT, "gap to optimum"]].rename(columns=SHORT)
+        mine = [*SHORT, "gap to optimum", *comparison.metric_names(runs)]
+        short = part[["planner", "coverage", "proven", *mine]].rename(columns=SHORT)
         short = short.map(lambda cell: str(cell).split(" [")[0])
         _print(short, f"{suite}: {blocks} blocks, {count} buffers, {variant} (times are medians, costs mean ± std)")
     _print(comparison.outcome_table(runs), "how the runs ended")

@@ -15,10 +15,10 @@ from smash.problem.model import PlanOptions
 @click.argument("instance", type=click.Path(path_type=Path))
 @click.option(
     "--encoding",
-    type=click.Choice(["conditional", "chain"]),
     default="chain",
     show_default=True,
-    help="How a topple is told: one action with conditional effects, or a chain of STRIPS actions.",
+    metavar="NAME",
+    help="How a topple is told: `conditional` (one action), `chain` (STRIPS actions), or one that is registered.",
 )
 @click.option("--no-topple", is_flag=True, help="Pick and place only.")
 @click.option("--max-topple", type=click.IntRange(min=1), metavar="M", help="At most M blocks in one topple (chain).")

@@ -11,6 +11,7 @@ from importlib.metadata import PackageNotFoundError, entry_points, version
 from pathlib import Path
 from typing import Any
 
+from baselines.encodings import GROUP as ENCODINGS
 from smash.planners.registry import GROUP
 
 PACKAGES = (
@@ -34,16 +35,18 @@ PACKAGES = (
 
 @cache
 def versions(planner: str) -> dict[str, str]:
-    """Return the versions of Python, of `PACKAGES`, and of the distribution that brings `planner`."""
+    """Return the versions of Python, of `PACKAGES`, and of the distributions that bring `planner`."""
     found = {"python": platform.python_version()}
     for package in PACKAGES:
         try:
             found[package] = version(package)
         except PackageNotFoundError:
             continue
-    for entry in entry_points(group=GROUP, name=planner):
-        if entry.dist is not None:
-            found[entry.dist.name] = entry.dist.version
+    plain, _, encoding = planner.partition(":")
+    for group, name in ((GROUP, planner), (GROUP, plain), (ENCODINGS, encoding)):
+        for entry in entry_points(group=group, name=name):
+            if entry.dist is not None:
+                found[entry.dist.name] = entry.dist.version
     return found
 
 

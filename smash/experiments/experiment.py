@@ -21,7 +21,7 @@ import msgspec
 
 from smash.experiments.job import DEFAULT_MEMORY, Job
 from smash.planners.protocol import SolveOptions
-from smash.planners.registry import UnknownPlanner, get_planner, planner_names
+from smash.planners.registry import get_planner, why_unknown
 from smash.problem.errors import MalformedFile, Unsupported
 from smash.problem.files import convert, instance_document, read_bytes
 from smash.problem.model import Instance, PlanOptions
@@ -119,12 +119,12 @@ def check_experiment(experiment: Experiment, where: str = "experiment") -> None:
     expect(experiment.jobs >= 1, "jobs", f"{experiment.jobs} is not allowed; 1 and more")
     _expect_list(expect, "seeds", experiment.seeds, lambda seed: seed >= 0, "0 and more")
     _check_grid(expect, "", experiment)
-    known = planner_names()
     settings: dict[str, tuple[object, ...]] = {}
     for index, entry in enumerate(experiment.planners):
         part = f"planners[{index}]"
         for name in filter(None, (entry.name, entry.warm_start)):
-            expect(name in known, part, str(UnknownPlanner(name, known)))
+            unknown = why_unknown(name)
+            expect(unknown is None, part, unknown or "")
         expect(entry.threads >= 1, f"{part}.threads", f"{entry.threads} is not allowed; 1 and more")
         expect(entry.horizon is None or entry.horizon >= 1, f"{part}.horizon", f"{entry.horizon} is not allowed")
         _check_grid(expect, f"{part}.", entry)

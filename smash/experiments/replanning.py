@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from smash.experiments.isolation import run_isolated
 from smash.experiments.job import Job
 from smash.planners.protocol import SolveOptions
-from smash.planners.registry import planner_names
+from smash.planners.registry import why_unknown
 from smash.problem.model import Action, Instance, PlanOptions
 
 FALLBACK = "greedy"
@@ -26,7 +26,7 @@ def replanner(
         seed: For planners that draw.
     """
     settings = SolveOptions(options.topple, options.max_topple, seed=seed)
-    names = [name for name in dict.fromkeys((planner, FALLBACK)) if name in planner_names()]
+    names = [name for name in dict.fromkeys((planner, FALLBACK)) if why_unknown(name) is None]
 
     def plan(instance: Instance) -> Sequence[Action] | None:
         for name in names:

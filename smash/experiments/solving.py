@@ -18,7 +18,7 @@ from typing import Any, NoReturn
 from smash.experiments.job import Job
 from smash.planners.protocol import PlanResult
 from smash.planners.registry import UnknownPlanner, get_planner
-from smash.problem.errors import Unsupported
+from smash.problem.errors import SmashError, Unsupported
 from smash.problem.files import action_list
 from smash.problem.model import Action
 from smash.problem.plan import STATUSES
@@ -42,10 +42,10 @@ def solve(job: Job, pipe: int) -> NoReturn:
 def _solve(job: Job, voice: _Voice) -> None:
     try:
         planner = get_planner(job.planner)
-    except UnknownPlanner as error:
-        return voice.say(kind="failed", outcome="malformed", reason=str(error))
     except Unsupported as error:
         return voice.say(kind="failed", outcome="not-installed", reason=str(error))
+    except SmashError as error:  # no such planner, or no such encoding for it
+        return voice.say(kind="failed", outcome="malformed", reason=str(error))
     try:
         ask = getattr(planner, "unsupported", None)
         reason = ask(job.instance, job.options) if ask is not None else None

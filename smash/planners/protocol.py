@@ -84,6 +84,7 @@ class Planner(Protocol):
     - `prepare() -> None`, loads libraries and compiles what is compiled once, before the clock starts;
     - `proves: bool`, whether it can report `optimal`;
     - `missing() -> str | None`, what is not installed that it needs;
+    - `with_encoding(name) -> Planner`, the same planner on another PDDL encoding (`NAME:ENCODING`);
     - `build_model(instance, options) -> Milp`, the MILP that `solve` starts with, for `smash model`.
     """
 

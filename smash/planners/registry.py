@@ -1,7 +1,11 @@
-"""Planners by name, from the `smash.planners` entry-point group; nothing is imported before it is asked for."""
+"""Planners by name, from the `smash.planners` entry-point group; nothing is imported before it is asked for.
+
+`NAME:ENCODING` is the planner NAME on another PDDL encoding, where it has a choice (`with_encoding`).
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from importlib.metadata import EntryPoint, entry_points
 
 from smash.planners.protocol import Planner
@@ -31,19 +35,38 @@ def get_planner(name: str) -> Planner:
     Raises:
         UnknownPlanner: where no planner has this name.
         Unsupported: where its module or engine is not installed.
+        SmashError: where `NAME:ENCODING` names an encoding that is none.
     """
     registered = _registered()
-    if name not in registered:
+    plain, _, encoding = (name, "", "") if name in registered else name.partition(":")
+    if plain not in registered:
         raise UnknownPlanner(name, sorted(registered))
     try:
-        planner: Planner = registered[name].load()()
+        planner: Planner = registered[plain].load()()
     except (ImportError, AttributeError) as error:
         raise Unsupported(f"planner {name!r} is not installed: {error}") from None
+    if plain != name:
+        choose: Callable[[str], Planner] | None = getattr(planner, "with_encoding", None)
+        if choose is None:
+            raise UnknownPlanner(name, sorted(registered))
+        planner = choose(encoding)
     missing = getattr(planner, "missing", None)
     lacks = missing() if missing is not None else None
     if lacks:
         raise Unsupported(f"planner {name!r} is not installed: {lacks}")
     return planner
+
+
+def why_unknown(name: str) -> str | None:
+    """Return why there is no planner called `name`, or None; one that is broken or not installed is known."""
+    try:
+        if name not in _registered():
+            get_planner(name)
+    except Unsupported:
+        return None
+    except SmashError as error:
+        return str(error)
+    return None
 
 
 def _registered() -> dict[str, EntryPoint]:

@@ -182,4 +182,4 @@ def test_trimming_keeps_the_used_buffers_and_enough_free_ones(instance):
 
 
 def test_every_domain_file_is_an_encoding():
-    assert {path.stem for path in DOMAINS.glob("*.pddl")} >= {encoding.file for encoding in ENCODINGS.values()}
+    assert {path.stem for path in DOMAINS.glob("*.pddl")} >= {encoding.name for encoding in ENCODINGS.values()}

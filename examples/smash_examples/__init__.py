@@ -1,0 +1,1 @@
+"""Additions to the testbed from outside, each in one short file."""

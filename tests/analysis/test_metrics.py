@@ -1,0 +1,23 @@
+"""Metrics of others: what they give, and that one which is broken breaks nothing else."""
+
+import math
+
+from analysis import metrics
+from analysis.records import runs_table
+from tests.analysis.made_up import record
+
+
+def test_a_metric_becomes_a_column_and_a_failing_one_is_named(monkeypatch, capsys):
+    def topples(run):
+        return sum(action[0] == "topple" for action in run["actions"] or []) if run["actions"] else None
+
+    monkeypatch.setattr(metrics, "metrics", lambda: {"topples": topples, "wrong": lambda run: run["nothing"]})
+    rows = [record(), record()]
+    rows[0]["actions"] = [["topple", "s1", 1], ["pick", "b1", "table"]]
+    rows[1]["actions"] = None
+    table = runs_table(rows)
+    assert table["metric.topples"][0] == 1
+    assert math.isnan(table["metric.topples"][1])
+    assert table["metric.wrong"].isna().all()
+    assert metrics.metric_names(table) == ["topples", "wrong"]
+    assert "metric 'wrong' fails on 2 runs: KeyError" in capsys.readouterr().err

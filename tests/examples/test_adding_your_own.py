@@ -1,0 +1,128 @@
+"""Every example of `docs/adding-your-own.md` does what the page says, from outside of the package."""
+
+import csv
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+from baselines.configurations import FAST_DOWNWARD
+from smash.planners.protocol import SolveOptions
+from smash.problem import Law, PlanOptions
+from tests.oracle import optimal_cost
+from tests.strategies import instances, plan_options
+
+ROOT = Path(__file__).parents[2]
+EXAMPLES = ROOT / "examples"
+FIGURE_1 = EXAMPLES / "figure1.json"
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory):
+    """The environment of a process in which the example package is installed."""
+    site = tmp_path_factory.mktemp("site")
+    project = tomllib.loads((EXAMPLES / "pyproject.toml").read_text())["project"]
+    info = site / "smash_examples-0.1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {project['name']}\nVersion: {project['version']}\n")
+    lines = []
+    for group, entries in project["entry-points"].items():
+        lines += [f"[{group}]", *(f"{name} = {target}" for name, target in entries.items()), ""]
+    (info / "entry_points.txt").write_text("\n".join(lines))
+    shutil.copytree(EXAMPLES / "smash_examples", site / "smash_examples")
+    return {**os.environ, "PYTHONPATH": f"{site}:{ROOT}"}
+
+
+def run(command, environment, folder):
+    return subprocess.run(
+        [sys.executable, *map(str, command)], env=environment, cwd=folder, capture_output=True, text=True, timeout=100
+    )
+
+
+def plan(planner, environment, folder, *more):
+    return run(["-m", "smash", "plan", FIGURE_1, "--planner", planner, *more], environment, folder)
+
+
+@pytest.fixture
+def best_first(monkeypatch):
+    monkeypatch.syspath_prepend(str(EXAMPLES))
+    from smash_examples.planner import BestFirst
+
+    return BestFirst()
+
+
+def test_the_planner_is_known_by_its_name(installed, tmp_path):
+    answer = json.loads(plan("best-first", installed, tmp_path).stdout)
+    assert (answer["status"], answer["cost"]) == ("optimal", 3)
+    assert "best-first" in run(["-m", "smash", "planners"], installed, tmp_path).stdout
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+@given(instance=instances(max_blocks=4), options=plan_options())
+def test_the_planner_finds_and_proves_the_optimum(best_first, instance, options):
+    answer = best_first.solve(instance, SolveOptions(options.topple, options.max_topple), 20.0)
+    assert answer.cost == optimal_cost(instance, PlanOptions(options.topple, options.max_topple))
+    assert answer.status == ("infeasible" if answer.cost is None else "optimal")
+    assert answer.actions is None or Law(instance, options).check(answer.actions).accepted
+
+
+@pytest.mark.skipif(FAST_DOWNWARD.root is None, reason="Fast Downward is not installed")
+def test_the_encoding_serves_the_planners_that_take_axioms(installed, tmp_path):
+    answer = json.loads(plan("fd-lama:axioms", installed, tmp_path).stdout)
+    assert (answer["planner"], answer["cost"]) == ("fd-lama:axioms", 3)
+    refused = plan("fd-opt:axioms", installed, tmp_path)
+    assert refused.returncode == 6
+    assert "no conditional effects" in refused.stderr
+    assert plan("fd-lama:axioms", installed, tmp_path, "--max-topple", 2).returncode == 6
+
+
+def test_the_encoding_is_written_for_planners_outside(installed, tmp_path):
+    command = ["-m", "smash", "export-pddl", FIGURE_1, "--encoding", "axioms", "--out", tmp_path]
+    assert run(command, installed, tmp_path).returncode == 0
+    assert ":derived (over" in (tmp_path / "domain.pddl").read_text()
+    assert "smash-topple-axioms" in (tmp_path / "problem.pddl").read_text()
+
+
+@pytest.mark.parametrize("name", ["fd-lama:nobody", "greedy:chain", "nobody:chain", "fd-lama:"])
+def test_an_encoding_that_is_none_is_one_line(name, installed, tmp_path):
+    ended = plan(name, installed, tmp_path)
+    assert ended.returncode == 2
+    assert ended.stderr.count("\n") == 1
+    assert "known:" in ended.stderr
+
+
+def test_the_instance_set_the_experiment_and_the_metric_meet_in_one_table(installed, tmp_path):
+    for file in ("instance_set.py", "experiment.toml"):
+        shutil.copy(EXAMPLES / file, tmp_path)
+    assert run(["instance_set.py", "towers"], installed, tmp_path).returncode == 0
+    swept = run(["-m", "smash", "sweep", "experiment.toml"], installed, tmp_path)
+    assert "12 runs recorded" in swept.stdout, swept.stderr
+    assert run(["-m", "analysis.comparison", "runs/towers"], installed, tmp_path).returncode == 0
+    with (tmp_path / "runs" / "towers" / "comparison" / "comparison.csv").open() as rows:
+        table = list(csv.DictReader(rows))
+    of_smash = {row["variant"]: row for row in table if row["planner"] == "smash" and row["blocks"] == "6"}
+    assert of_smash["topple"]["handling"].startswith("1.00")
+    assert float(of_smash["no-topple"]["handling"].split()[0]) > 1
+
+
+@pytest.mark.slow
+def test_the_instance_set_is_a_suite_of_compare(installed, tmp_path):
+    assert run([EXAMPLES / "instance_set.py", "towers"], installed, tmp_path).returncode == 0
+    command = ["compare", "towers", "--planner", "greedy", "--instances", 1, "--variant", "topple", "--budget", 1]
+    ended = run(["-m", "smash", *command], installed, tmp_path)
+    assert ended.returncode == 0, ended.stderr
+    assert "handling" in ended.stdout
+
+
+@pytest.mark.slow
+def test_the_package_installs(tmp_path):
+    command = ["-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation", "--target", tmp_path, EXAMPLES]
+    assert run(command, dict(os.environ), tmp_path).returncode == 0
+    environment = {**os.environ, "PYTHONPATH": f"{tmp_path}:{ROOT}"}
+    assert json.loads(plan("best-first", environment, tmp_path).stdout)["cost"] == 3
