@@ -6,8 +6,9 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from baselines.task import PddlTask
 from smash.problem.errors import IllegalAction
-from smash.problem.model import TABLE, Action, Pick, Place, State, Topple
+from smash.problem.model import TABLE, Action, Pick, Place, State
 from smash.problem.rules import Law
+from smash.problem.topple import Topple
 
 Step = tuple[str, ...]
 """A grounded PDDL action: its name and its arguments, `("pick", "b02", "b01")`."""

@@ -28,7 +28,7 @@ from baselines.read_problem import ReadProblem
 from baselines.read_up import read_up_problem
 from baselines.steps import steps_of
 from baselines.up_problem import up_plan
-from smash.planners.protocol import OnIncumbent, PlanResult, SolveOptions
+from smash.planners.protocol import OnIncumbent, PlanResult, SolveOptions, why_unsupported
 from smash.planners.registry import DEFAULT, get_planner
 from smash.problem.errors import MalformedFile, SmashError, Unsupported
 from smash.problem.model import Action
@@ -143,8 +143,7 @@ class SmashEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin):  # type: ig
         report: OnIncumbent = lambda _seconds, _cost, actions: heard.put(tuple(actions))  # noqa: E731
         try:
             planner = get_planner(self._planner)
-            ask = getattr(planner, "unsupported", None)
-            reason = ask(read.instance, options) if ask is not None else None
+            reason = why_unsupported(planner, read.instance, options)
             if reason:
                 raise Unsupported(reason)
             heard.put(planner.solve(read.instance, options, budget, report))

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import click
 
-from smash.planners.protocol import SolveOptions
+from smash.cli.choices import without_option
+from smash.planners.protocol import SolveOptions, why_unsupported
 from smash.planners.registry import get_planner
 from smash.problem.errors import Unsupported
 from smash.problem.files import read_instance
@@ -17,6 +18,7 @@ from smash.problem.files import read_instance
 @click.option("--planner", default="smash-layered", show_default=True, metavar="NAME", help="A planner with a MILP.")
 @click.option("--no-topple", is_flag=True, help="Pick and place only.")
 @click.option("--max-topple", type=click.IntRange(min=1), metavar="M", help="At most M blocks in one topple.")
+@without_option
 @click.option("--warm-start", metavar="NAME", help="Planner whose plan the first horizon has to hold.")
 @click.option("--horizon", type=click.IntRange(min=1), metavar="T", help="Steps or layers.")
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="File to write: .mps or .lp.")
@@ -25,6 +27,7 @@ def command(
     planner: str,
     no_topple: bool,
     max_topple: int | None,
+    without: tuple[str, ...],
     warm_start: str | None,
     horizon: int | None,
     out: Path | None,
@@ -41,9 +44,8 @@ def command(
     if build is None:
         raise Unsupported(f"planner {planner!r} has no model to write; smash-flow and smash-layered have")
     problem = read_instance(instance)
-    options = SolveOptions(not no_topple, max_topple, warm_start, horizon)
-    ask = getattr(chosen, "unsupported", None)
-    reason = ask(problem, options) if ask is not None else None
+    options = SolveOptions(not no_topple, max_topple, warm_start, horizon, without=without)
+    reason = why_unsupported(chosen, problem, options)
     if reason:
         raise Unsupported(f"planner {planner!r}: unsupported: {reason}")
     model = build(problem, options)

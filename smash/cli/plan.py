@@ -12,6 +12,7 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
+from smash.cli.choices import without_option
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.isolation import run_isolated
 from smash.experiments.job import DEFAULT_MEMORY, Job, Report
@@ -27,6 +28,7 @@ from smash.problem.model import Action
 @click.option("--planner", default=DEFAULT, show_default=True, metavar="NAME", help="See `smash planners`.")
 @click.option("--no-topple", is_flag=True, help="Pick and place only.")
 @click.option("--max-topple", type=click.IntRange(min=1), metavar="M", help="At most M blocks in one topple.")
+@without_option
 @click.option(
     "--budget",
     type=click.FloatRange(min=0, min_open=True, max=1e9),
@@ -53,6 +55,7 @@ def command(
     planner: str,
     no_topple: bool,
     max_topple: int | None,
+    without: tuple[str, ...],
     budget: float,
     memory: int,
     warm_start: str | None,
@@ -70,7 +73,7 @@ def command(
       smash plan examples/figure1.json
       smash plan examples/figure1.json --no-topple --planner precedence --out plan.json
     """
-    options = SolveOptions(not no_topple, max_topple, warm_start, horizon, threads, seed)
+    options = SolveOptions(not no_topple, max_topple, warm_start, horizon, threads, seed, without=without)
     job = Job(planner, read_instance(instance), options, budget, memory)
     if math.isnan(budget):
         raise click.BadParameter("nan is no number of seconds", param_hint="--budget")
@@ -94,7 +97,7 @@ def _write(report: Report, job: Job, out: Path | None) -> None:
 
 
 def _end(report: Report, who: str) -> None:
-    found = f"; the best plan so far has cost {len(report.actions)}" if report.actions is not None else ""
+    found = f"; the best plan so far has cost {report.incumbents[-1].cost}" if report.actions is not None else ""
     words = {
         "infeasible": "proven infeasible",
         "budget-spent": "budget spent without a plan",

@@ -18,7 +18,9 @@ from smash.execution.poses import Vector
 from smash.execution.pushes import topple
 from smash.execution.steps import Approach, Move, Segment, Steps
 from smash.execution.tabletop import Slot
-from smash.problem.model import Action, Pick, Place, State, Topple
+from smash.problem.errors import Unsupported
+from smash.problem.model import Action, Pick, Place, State
+from smash.problem.topple import Topple
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,6 +112,8 @@ class Grounder:
             case Topple(location, height):
                 pile = tuple(piles[location])
                 return Task(action, topple(self.steps, joints, self.slots[location], pile, height, poses))
+            case _:
+                raise Unsupported(f"{action}: the arm has no motion for it")
 
     def _foresee(self, action: Action, piles: dict[str, list[str]], known: dict[str, BlockPose]) -> None:
         """Move piles and known poses on; a block in the hand keeps its entry: it is known to be held."""

@@ -21,7 +21,8 @@ from smash.execution.robot import panda
 from smash.execution.steps import OPEN_SECONDS, OPENINGS, Grip, Move, Segment
 from smash.execution.tabletop import Slot
 from smash.execution.world import World
-from smash.problem.model import TABLE, Pick, Place, State, Topple
+from smash.problem.model import TABLE, Pick, Place, State
+from smash.problem.topple import Topple
 
 GRASPED_WITHIN = 0.5
 """A held block's centre is within this share of its side of the tool."""

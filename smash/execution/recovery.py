@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 from smash.execution.errors import ExecutionFailure
 from smash.execution.performing import Performer
-from smash.problem.model import TABLE, Action, Instance, Pick, Place, Topple
+from smash.problem.model import TABLE, Action, Instance, Pick, Place
+from smash.problem.topple import Topple
 
 NEAR = 0.11
 """Loose blocks this near to a place can be in the hand's way there [m]."""

@@ -79,7 +79,7 @@ def scene_from_document(document: Any, where: str = "scene") -> Tabletop:
     Raises:
         MalformedFile: with one line that says where and what is allowed.
     """
-    check_format(document, SCENE_FORMAT, where)
+    check_format(document, where, SCENE_FORMAT)
     file = cast(_SceneFile, convert(document, _SceneFile, where))
     if not file.stacks:
         raise MalformedFile(where, "`stacks`: at least one is needed")

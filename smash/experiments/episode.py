@@ -11,7 +11,7 @@ from smash.execution.policy import OPEN
 from smash.execution.scene_file import default_scene, read_scene
 from smash.experiments.episodes import REPLAN_BUDGET
 from smash.experiments.replanning import replanner
-from smash.problem.files import instance_from_document, plan_from_document
+from smash.problem.files import PLAN_FORMAT_2, instance_from_document, plan_from_document
 
 
 def main() -> None:
@@ -20,7 +20,8 @@ def main() -> None:
     record = question["record"]
     instance = instance_from_document(record["instance_document"])
     fields = ("instance", "planner", "topple", "max_topple", "status", "cost", "actions", "lower_bound", "bound_origin")
-    plan = plan_from_document({"format": "smash-plan/1", **{field: record[field] for field in fields}})
+    filed = {field: record[field] for field in fields} | {"without": record.get("without", [])}
+    plan = plan_from_document({"format": PLAN_FORMAT_2, **filed})
     scene = default_scene() if question["scene"] is None else read_scene(question["scene"])
     seed, is_open = question["seed"], question["policy"] == "open"
     executor = Executor(

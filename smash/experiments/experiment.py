@@ -23,11 +23,14 @@ from smash.experiments.job import DEFAULT_MEMORY, Job
 from smash.planners.protocol import SolveOptions
 from smash.planners.registry import get_planner, why_unknown
 from smash.problem.errors import MalformedFile, Unsupported
+from smash.problem.family import FAMILY
 from smash.problem.files import convert, instance_document, read_bytes
 from smash.problem.model import Instance, PlanOptions
 from smash.problem.suites import read_suite, suite_names, with_buffers
 
 RunKind = Literal["anytime", "budget", "cutoff"]
+FURTHER = tuple(name for name in FAMILY if name != "topple")
+"""Aggregating actions that a variant can leave out by `-no-NAME`."""
 """`anytime`: stands for every smaller budget too; `budget`: for its own alone; `cutoff`: checks that reading."""
 
 T = TypeVar("T")
@@ -55,7 +58,7 @@ class Experiment(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """An experiment file. `instances` takes the first so many of each suite; without `buffers` they stay as filed.
 
     `budgets` are seconds, `memory` MiB over a run's processes, `variants` are `topple`, `no-topple` or
-    `max-topple-M`.
+    `max-topple-M`, each perhaps followed by `-no-carry` and the like.
     """
 
     name: str
@@ -138,7 +141,8 @@ def _check_grid(expect: Expect, at: str, grid: Experiment | PlannerEntry) -> Non
     _expect_list(expect, f"{at}suites", grid.suites, lambda suite: suite != "", "a set's name or a directory")
     _expect_list(expect, f"{at}budgets", grid.budgets, lambda s: 0 < s <= 1e9, "seconds above 0")
     _expect_list(expect, f"{at}buffers", grid.buffers, lambda count: 0 <= count <= 10_000, "0 and more")
-    allowed = "`topple`, `no-topple` or `max-topple-M`"
+    further = ", ".join(f"`-no-{name}`" for name in FURTHER)
+    allowed = f"`topple`, `no-topple` or `max-topple-M`, each perhaps followed by {further}"
     _expect_list(expect, f"{at}variants", grid.variants, lambda v: variant_options(v) is not None, allowed)
     few, sample = grid.instances, grid.cutoff_sample
     expect(few is None or few >= 1, f"{at}instances", f"{few} is not allowed; 1 and more")
@@ -156,10 +160,13 @@ def _expect_list(expect: Expect, part: str, values: list[T] | None, fits: Callab
 
 def variant_options(variant: str) -> PlanOptions | None:
     """Return what a variant's name allows a plan to do, or None where it is no variant."""
-    if variant in ("topple", "no-topple"):
-        return PlanOptions(variant == "topple")
-    cap = re.fullmatch(r"max-topple-([1-9][0-9]{0,5})", variant)
-    return PlanOptions(True, int(cap[1])) if cap else None
+    parts = re.fullmatch(
+        rf"(topple|no-topple|max-topple-([1-9][0-9]{{0,5}}))((?:-no-(?:{'|'.join(FURTHER)}))*)", variant
+    )
+    if parts is None:
+        return None
+    without = tuple(parts[3].split("-no-")[1:])
+    return PlanOptions(parts[1] != "no-topple", int(parts[2]) if parts[2] else None, without=without)
 
 
 def experiment_runs(experiment: Experiment, base: Path = Path()) -> list[Run]:
@@ -211,7 +218,15 @@ def _entry_runs(experiment: Experiment, entry: PlannerEntry, base: Path) -> Iter
 def _options(entry: PlannerEntry, variant: str, seed: int) -> SolveOptions:
     allowed = variant_options(variant)
     assert allowed is not None
-    return SolveOptions(allowed.topple, allowed.max_topple, entry.warm_start, entry.horizon, entry.threads, seed)
+    return SolveOptions(
+        allowed.topple,
+        allowed.max_topple,
+        entry.warm_start,
+        entry.horizon,
+        entry.threads,
+        seed,
+        without=allowed.without,
+    )
 
 
 def _run(

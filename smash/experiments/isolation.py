@@ -121,6 +121,7 @@ class _Heard:
         self._law = Law(job.instance, job.options)
         self._tell = on_incumbent
         self._best: tuple[Action, ...] | None = None
+        self._cost: int | None = None
         self._trace: list[Incumbent] = []
         self._proof: Mapping[str, Any] = {}
         self._refusal: Verdict | None = None
@@ -160,7 +161,7 @@ class _Heard:
         status: Status = "unknown" if self._best is None else "feasible"
         if not refused and answer.get("status") in ("optimal", "infeasible"):
             status = answer["status"]
-        elif self._best is not None and proof.get("lower_bound") == len(self._best):
+        elif self._best is not None and proof.get("lower_bound") == self._cost:
             status = "optimal"
         verdict = self._refusal
         if verdict is None and self._best is not None:
@@ -188,16 +189,17 @@ class _Heard:
         if (actions is None) != (status in ("infeasible", "unknown")):
             return self._refuse(f"status {status} {'without' if actions is None else 'with'} a plan")
         if actions is not None:
-            times = [at for at, cost, _ in answer["incumbents"] if cost == len(actions)]
+            stated = answer["cost"]
+            times = [at for at, cost, _ in answer["incumbents"] if cost == stated]
             at = min([answer["seconds"], *(time for time in times if time >= 0)])
-            self._plan(actions, len(actions), at, origins.get(len(actions), self._job.planner))
-        best = None if self._best is None else len(self._best)
+            self._plan(actions, stated, at, origins.get(stated, self._job.planner))
+        best = self._cost
         if status == "infeasible" and best is not None:
             return self._refuse("status infeasible, yet it had reported a legal plan")
         if best is not None and bound is not None and bound > best:
             return self._refuse(f"lower bound {bound}, yet there is a legal plan of {best}")
-        if status == "optimal" and actions is not None and (len(actions) != best or bound not in (None, best)):
-            return self._refuse(f"status optimal at cost {len(actions)}, best legal plan {best}, lower bound {bound}")
+        if status == "optimal" and actions is not None and (answer["cost"] != best or bound not in (None, best)):
+            return self._refuse(f"status optimal at cost {answer['cost']}, best legal plan {best}, lower bound {bound}")
         return None
 
     def _plan(self, entries: list[Any], cost: int, seconds: float, origin: str) -> None:
@@ -209,21 +211,21 @@ class _Heard:
         verdict = self._law.check(actions)
         if not verdict.accepted:
             self._refusal = self._refusal or verdict
-        elif cost != len(actions):
-            self._refuse(f"its cost says {cost}, its length is {len(actions)}")
-        elif self._best is None or len(actions) < len(self._best):
-            self._best = actions
-            self._trace.append(Incumbent(seconds, len(actions), origin))
+        elif cost != verdict.cost:
+            self._refuse(f"its cost says {cost}, the law counts {verdict.cost}")
+        elif self._cost is None or cost < self._cost:
+            self._best, self._cost = actions, cost
+            self._trace.append(Incumbent(seconds, cost, origin))
             if self._tell is not None:
-                self._tell(seconds, len(actions), actions)
+                self._tell(seconds, cost, actions)
         return None
 
     def _refuse(self, reason: str) -> None:
         self._refusal = self._refusal or Verdict(False, reason)
 
     def _outcome(self, interrupted: bool) -> tuple[OutcomeName, str]:
-        if self._best is not None and self._proof.get("lower_bound", 0) > len(self._best):
-            self._refuse(f"lower bound {self._proof['lower_bound']}, yet there is a legal plan of {len(self._best)}")
+        if self._cost is not None and self._proof.get("lower_bound", 0) > self._cost:
+            self._refuse(f"lower bound {self._proof['lower_bound']}, yet there is a legal plan of {self._cost}")
         if self._failure is not None:
             return self._failure["outcome"], self._failure["reason"]
         if self._refusal is not None:

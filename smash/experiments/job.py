@@ -10,7 +10,7 @@ from smash.planners.protocol import SolveOptions
 from smash.problem.files import instance_document, instance_from_document
 from smash.problem.model import Action, Instance, PlanOptions
 from smash.problem.plan import Incumbent, Plan, Status
-from smash.problem.rules import Verdict
+from smash.problem.rules import Law, Verdict
 
 DEFAULT_MEMORY = 4096
 """Memory limit of a run's whole process tree [MiB], where none is given."""
@@ -50,7 +50,7 @@ class Job:
         return cls(
             document["planner"],
             instance_from_document(document["instance"]),
-            SolveOptions(**document["options"]),
+            SolveOptions(**document["options"] | {"without": tuple(document["options"]["without"])}),
             document["budget"],
             document["memory"],
         )
@@ -90,10 +90,11 @@ class Report:
         return Plan(
             instance=job.instance.name,
             planner=job.planner,
-            options=PlanOptions(job.options.topple, job.options.max_topple),
+            options=PlanOptions(job.options.topple, job.options.max_topple, without=job.options.without),
             status=self.status,
             actions=self.actions,
             lower_bound=self.lower_bound,
             bound_origin=self.bound_origin,
             incumbents=self.incumbents,
+            stated_cost=None if self.actions is None else Law(job.instance, job.options).price(self.actions),
         )

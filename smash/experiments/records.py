@@ -41,6 +41,7 @@ def record_of(run: Run, report: Report, started: datetime, load_before: float) -
         "variant": run.variant,
         "kind": run.kind,
         **document,
+        "without": list(job.options.without),
         "outcome": report.outcome,
         "reason": report.reason,
         "verdict": None

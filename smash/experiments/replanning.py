@@ -25,7 +25,7 @@ def replanner(
         budget: Seconds of wall time for each plan.
         seed: For planners that draw.
     """
-    settings = SolveOptions(options.topple, options.max_topple, seed=seed)
+    settings = SolveOptions(options.topple, options.max_topple, seed=seed, without=options.without)
     names = [name for name in dict.fromkeys((planner, FALLBACK)) if why_unknown(name) is None]
 
     def plan(instance: Instance) -> Sequence[Action] | None:

@@ -85,3 +85,4 @@ class RunRecord(msgspec.Struct):
     versions: dict[str, str]
     commit: CommitField
     machine: MachineField
+    without: list[str] = []

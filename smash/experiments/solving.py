@@ -16,7 +16,7 @@ from time import perf_counter
 from typing import Any, NoReturn
 
 from smash.experiments.job import Job
-from smash.planners.protocol import PlanResult
+from smash.planners.protocol import PlanResult, why_unsupported
 from smash.planners.registry import UnknownPlanner, get_planner
 from smash.problem.errors import SmashError, Unsupported
 from smash.problem.files import action_list
@@ -47,8 +47,7 @@ def _solve(job: Job, voice: _Voice) -> None:
     except SmashError as error:  # no such planner, or no such encoding for it
         return voice.say(kind="failed", outcome="malformed", reason=str(error))
     try:
-        ask = getattr(planner, "unsupported", None)
-        reason = ask(job.instance, job.options) if ask is not None else None
+        reason = why_unsupported(planner, job.instance, job.options)
         if reason:
             raise Unsupported(f"planner {job.planner!r}: unsupported: {reason}")
         prepare = getattr(planner, "prepare", None)
@@ -104,6 +103,7 @@ def _result_document(result: PlanResult) -> dict[str, Any]:
         return {
             "status": result.status,
             "actions": None if result.actions is None else [action_list(action) for action in result.actions],
+            "cost": result.cost,
             "lower_bound": None if bound is None or not math.isfinite(bound) else int(bound),
             "bound_origin": None if result.bound_origin is None else str(result.bound_origin),
             "incumbents": [[float(at), int(cost), str(origin)] for at, cost, origin in result.incumbents],

@@ -6,7 +6,8 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from smash.gadget.graph import Aggregate, EdgeKind, GadgetBuilder, NodeKind
-from smash.problem.model import Action, State, Topple
+from smash.problem.model import Action, State
+from smash.problem.topple import Topple
 
 NAME = "topple"
 

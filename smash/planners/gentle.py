@@ -9,7 +9,8 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Sequence
 
-from smash.problem.model import TABLE, Action, Instance, Pick, Place, State, Topple
+from smash.problem.model import TABLE, Action, Instance, Pick, Place, State
+from smash.problem.topple import Topple
 
 
 def gentle_topples(instance: Instance, actions: Sequence[Action]) -> tuple[Action, ...]:

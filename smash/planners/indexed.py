@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from smash.problem.model import TABLE, Action, Instance, Pick, Place, Topple
+from smash.problem.model import TABLE, Action, Instance, Pick, Place
+from smash.problem.topple import Topple
 
 ON_TABLE = -1
 """The source of a move from the table region."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from time import perf_counter
 from typing import Any, ClassVar, Literal, Protocol, runtime_checkable
 
+from smash.problem.family import kinds_of
 from smash.problem.feasibility import why_infeasible
 from smash.problem.model import Action, Instance, PlanOptions
 from smash.problem.plan import Incumbent, Plan, Status
@@ -45,23 +46,28 @@ class PlanResult:
     bound_origin: str | None = None
     incumbents: tuple[Incumbent, ...] = ()
     details: Mapping[str, Any] = field(default_factory=dict)
+    priced: int | None = None
+    """The plan's cost where that is not its length."""
 
     @property
     def cost(self) -> int | None:
-        """The plan's cost: its length."""
-        return None if self.actions is None else len(self.actions)
+        """The plan's cost: its length, unless it is `priced`."""
+        if self.actions is None:
+            return None
+        return len(self.actions) if self.priced is None else self.priced
 
     def as_plan(self, instance: Instance, planner: str, options: PlanOptions) -> Plan:
         """Return the filed form."""
         return Plan(
             instance=instance.name,
             planner=planner,
-            options=PlanOptions(options.topple, options.max_topple),
+            options=PlanOptions(options.topple, options.max_topple, without=options.without),
             status=self.status,
             actions=self.actions,
             lower_bound=self.lower_bound,
             bound_origin=self.bound_origin,
             incumbents=self.incumbents,
+            stated_cost=self.cost,
         )
 
 
@@ -83,6 +89,8 @@ class Planner(Protocol):
       missing, a planner that is not `anytime` counts as dependent;
     - `prepare() -> None`, loads libraries and compiles what is compiled once, before the clock starts;
     - `proves: bool`, whether it can report `optimal`;
+    - `aggregating: frozenset[str]`, the aggregating actions that it plans with (`topple` alone, where it says nothing);
+    - `weighs: bool`, whether it takes instances whose actions do not all cost 1;
     - `missing() -> str | None`, what is not installed that it needs;
     - `with_encoding(name) -> Planner`, the same planner on another PDDL encoding (`NAME:ENCODING`);
     - `build_model(instance, options) -> Milp`, the MILP that `solve` starts with, for `smash model`.
@@ -106,6 +114,8 @@ class BasePlanner:
     anytime: ClassVar[bool] = True
     proves: ClassVar[bool] = False
     budget_dependent: ClassVar[bool] = False
+    aggregating: ClassVar[frozenset[str]] = frozenset({"topple"})
+    weighs: ClassVar[bool] = False
 
     def prepare(self) -> None:
         """Load what is loaded once and compile what is compiled once; not counted in the planner's time."""
@@ -117,6 +127,23 @@ class BasePlanner:
     def missing(self) -> str | None:
         """Return what is not installed that this planner needs, or None."""
         return None
+
+
+def why_unsupported(planner: Planner, instance: Instance, options: SolveOptions) -> str | None:
+    """Return why a planner cannot take a problem, or None: asked before it starts.
+
+    An action that it does not know, or costs that it does not weigh, would make its proofs wrong.
+    """
+    known = getattr(planner, "aggregating", BasePlanner.aggregating)
+    for kind in kinds_of(instance, options):
+        if kind.name not in known:
+            return f"it does not plan with {kind.name} (`--without {kind.name}` leaves that out)"
+    if any(carrier.holds for carrier in instance.carriers) and "carry" not in known:
+        return "blocks start on a carrier"
+    if not instance.costs.plain and not getattr(planner, "weighs", False):
+        return f"it counts actions, and the instance's costs are in {instance.costs.unit}"
+    ask = getattr(planner, "unsupported", None)
+    return None if ask is None else ask(instance, options)
 
 
 class IncumbentLog:
@@ -151,6 +178,7 @@ class IncumbentLog:
         self._gentle = gentle
         self.entries: list[Incumbent] = []
         self.best: tuple[Action, ...] | None = None
+        self.cost: int | None = None
         self.bound: int | None = None
         self.bound_origin: str | None = None
         self.refusals: list[str] = []
@@ -161,14 +189,9 @@ class IncumbentLog:
         return perf_counter() - self._started
 
     @property
-    def cost(self) -> int | None:
-        """Cost of the best plan so far, or None."""
-        return None if self.best is None else len(self.best)
-
-    @property
     def proven(self) -> bool:
         """Whether the best plan meets the best lower bound."""
-        return self.best is not None and self.bound is not None and self.bound >= len(self.best)
+        return self.cost is not None and self.bound is not None and self.bound >= self.cost
 
     def offer(self, actions: Sequence[Action], origin: str, seconds: float | None = None) -> bool:
         """Take a plan if it is legal and better than the best; report it at once.
@@ -181,17 +204,21 @@ class IncumbentLog:
         Returns:
             Whether it became the best plan. A plan that the law refuses goes to `refusals`.
         """
-        if self.best is not None and len(actions) >= len(self.best):
+        plain = self._instance.costs.plain
+        if self.cost is not None and plain and len(actions) >= self.cost:
             return False
         verdict = self._law.check(actions)
-        if not verdict.accepted:
+        if not verdict.accepted or verdict.cost is None:
             self.refusals.append(f"{origin}: {verdict}")
             return False
-        self.best = self._softened(actions)
+        if self.cost is not None and verdict.cost >= self.cost:
+            return False
+        self.best = self._softened(actions) if plain else tuple(actions)
+        self.cost = len(self.best) if plain else verdict.cost
         at = self.elapsed if seconds is None else seconds
-        self.entries.append(Incumbent(at, len(self.best), origin))
+        self.entries.append(Incumbent(at, self.cost, origin))
         if self._report is not None:
-            self._report(at, len(self.best), self.best)
+            self._report(at, self.cost, self.best)
         return True
 
     def prove(self, bound: int, origin: str) -> None:
@@ -249,6 +276,7 @@ class IncumbentLog:
             bound_origin=bound_origin if infeasible else self.bound_origin,
             incumbents=tuple(self.entries),
             details=details or {},
+            priced=self.cost,
         )
 
 

@@ -1,5 +1,7 @@
 """The law and its files: instances, states, actions, goals, the checker, generators, blocks-world import."""
 
+from smash.problem.carry import Carry
+from smash.problem.costs import Costs
 from smash.problem.errors import (
     IllegalAction,
     MalformedFile,
@@ -9,9 +11,11 @@ from smash.problem.errors import (
     Unsupported,
 )
 from smash.problem.files import make_instance, read_instance, read_plan, write_instance, write_plan
+from smash.problem.lift import Lift
 from smash.problem.model import (
     TABLE,
     Action,
+    Carrier,
     Goal,
     Instance,
     OnGoal,
@@ -21,19 +25,23 @@ from smash.problem.model import (
     PositionsGoal,
     StacksGoal,
     State,
-    Topple,
 )
 from smash.problem.plan import Incumbent, Plan, check_plan
 from smash.problem.rules import Law, Verdict
+from smash.problem.topple import Topple
 
 __all__ = [
     "TABLE",
     "Action",
+    "Carrier",
+    "Carry",
+    "Costs",
     "Goal",
     "IllegalAction",
     "Incumbent",
     "Instance",
     "Law",
+    "Lift",
     "MalformedFile",
     "OnGoal",
     "Pick",

@@ -11,6 +11,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Sequence
 
+from smash.problem.family import kinds_of
 from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal
 
 Pile = tuple[str, ...]
@@ -19,7 +20,9 @@ ENOUGH_LOCATIONS = 3
 
 
 def why_infeasible(instance: Instance, options: PlanOptions) -> str | None:
-    """Return in one line why no plan exists, or None where one does. The answer is exact.
+    """Return in one line why no plan exists, or None where one does.
+
+    The answer is exact, but for instances with further aggregating actions: there None promises nothing.
 
     Args:
         instance: the problem.
@@ -29,7 +32,7 @@ def why_infeasible(instance: Instance, options: PlanOptions) -> str | None:
     locations = len(instance.locations)
     if isinstance(goal, OnGoal) and len(goal.bottom) > locations:
         return f"the goal wants {len(goal.bottom)} blocks at the bottom of a location, there are {locations} locations"
-    if options.topple or locations >= ENOUGH_LOCATIONS:
+    if kinds_of(instance, options) or locations >= ENOUGH_LOCATIONS:
         return None
     if isinstance(goal, OnGoal):
         reachable = any(_towers_fit(instance, goal, piles) for piles in _splits(instance))

@@ -1,4 +1,7 @@
-"""JSON files in and out: `smash-instance/1` and `smash-plan/1`.
+"""JSON files in and out: `smash-instance/1` and `/2`, `smash-plan/1` and `/2`.
+
+Version 2 of an instance adds `carriers`, `capacities` and `costs`; version 2 of a plan adds `without`, further
+aggregating actions and a cost that is not the plan's length. What version 1 can say is written in version 1.
 
 Reading is strict: unknown keys, unknown names, a block twice or nowhere, a height that floats are refused
 by a `MalformedFile` whose one line says where and what is allowed.
@@ -9,15 +12,20 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, Literal, NoReturn, cast
+from typing import Any, Literal, cast
 
 import msgspec
 
+from smash.problem.checking import InstanceChecker
+from smash.problem.costs import UNIT_COSTS, Costs
 from smash.problem.errors import MalformedFile
+from smash.problem.family import FAMILY, kind_of
 from smash.problem.model import (
-    TABLE,
     Action,
+    Aggregating,
+    Carrier,
     Goal,
     Instance,
     OnGoal,
@@ -26,12 +34,13 @@ from smash.problem.model import (
     PlanOptions,
     PositionsGoal,
     StacksGoal,
-    Topple,
 )
 from smash.problem.plan import STATUSES, Incumbent, Plan, Status
 
 INSTANCE_FORMAT = "smash-instance/1"
+INSTANCE_FORMAT_2 = "smash-instance/2"
 PLAN_FORMAT = "smash-plan/1"
+PLAN_FORMAT_2 = "smash-plan/2"
 GOAL_KEYS = {
     "stacks": ("kind", "stacks"),
     "positions": ("kind", "positions"),
@@ -64,6 +73,28 @@ class _InstanceFile(msgspec.Struct, forbid_unknown_fields=True):
     table: list[str] = []
 
 
+class _CarrierFile(msgspec.Struct, forbid_unknown_fields=True):
+    name: str
+    stations: list[str]
+    at: str
+    capacity: int
+    holds: list[str] = []
+
+
+class _CostsFile(msgspec.Struct, forbid_unknown_fields=True):
+    actions: dict[str, int] = {}
+    travel: float = 0.0
+    positions: dict[str, tuple[float, float]] = {}
+    unit: str = "actions"
+
+
+class _InstanceFile2(_InstanceFile):
+    format: Literal["smash-instance/2"]  # type: ignore[assignment]
+    carriers: list[_CarrierFile] = []
+    capacities: dict[str, int] = {}
+    costs: _CostsFile = msgspec.field(default_factory=_CostsFile)
+
+
 class _PlanFile(msgspec.Struct, forbid_unknown_fields=True):
     format: Literal["smash-plan/1"]
     instance: str
@@ -76,6 +107,11 @@ class _PlanFile(msgspec.Struct, forbid_unknown_fields=True):
     lower_bound: int | None = None
     bound_origin: str | None = None
     incumbents: list[tuple[float, int, str]] = []
+
+
+class _PlanFile2(_PlanFile):
+    format: Literal["smash-plan/2"]  # type: ignore[assignment]
+    without: list[str] = []
 
 
 def parse_json(text: str | bytes, where: str) -> Any:
@@ -154,21 +190,22 @@ def convert(document: Any, kind: Any, where: str) -> Any:
         raise MalformedFile(where, message) from None
 
 
-def check_format(document: Any, wanted: str, where: str) -> None:
-    """Refuse a document that does not say the wanted `format`.
+def check_format(document: Any, where: str, *wanted: str) -> None:
+    """Refuse a document that does not say one of the wanted `format`s.
 
     Raises:
         MalformedFile: where it says another one or none.
     """
     if not isinstance(document, dict):
-        raise MalformedFile(where, f"not a JSON object; a {wanted} file is one")
+        raise MalformedFile(where, f"not a JSON object; a {wanted[0]} file is one")
     found = document.get("format")
-    if found != wanted:
-        raise MalformedFile(where, f"`format`: {found!r} is not allowed; {wanted!r} is")
+    if found not in wanted:
+        allowed = f"{wanted[0]!r} is" if len(wanted) == 1 else f"{' and '.join(map(repr, wanted))} are"
+        raise MalformedFile(where, f"`format`: {found!r} is not allowed; {allowed}")
 
 
 def read_instance(path: str | os.PathLike[str]) -> Instance:
-    """Read and check a `smash-instance/1` file.
+    """Read and check an instance file, version 1 or 2.
 
     Raises:
         MalformedFile: with one line that says where and what is allowed.
@@ -178,14 +215,15 @@ def read_instance(path: str | os.PathLike[str]) -> Instance:
 
 
 def instance_from_document(document: Any, where: str = "instance") -> Instance:
-    """Check a parsed `smash-instance/1` document and build the instance.
+    """Check a parsed instance document and build the instance.
 
     Raises:
         MalformedFile: with one line that says where and what is allowed.
     """
-    check_format(document, INSTANCE_FORMAT, where)
+    check_format(document, where, INSTANCE_FORMAT, INSTANCE_FORMAT_2)
     _check_goal_keys(document.get("goal"), where)
-    file = cast(_InstanceFile, convert(document, _InstanceFile, where))
+    second = document["format"] == INSTANCE_FORMAT_2
+    file = cast(_InstanceFile, convert(document, _InstanceFile2 if second else _InstanceFile, where))
     match file.goal:
         case _StacksGoalFile(stacks=stacks):
             goal: Goal = StacksGoal({location: tuple(pile) for location, pile in stacks.items()})
@@ -202,7 +240,18 @@ def instance_from_document(document: Any, where: str = "instance") -> Instance:
         goal=goal,
         table=file.table,
         where=where,
+        **(_additions(file) if isinstance(file, _InstanceFile2) else {}),
     )
+
+
+def _additions(file: _InstanceFile2) -> dict[str, Any]:
+    """Return what version 2 adds, as arguments of `make_instance`."""
+    costs = file.costs
+    return {
+        "carriers": [Carrier(c.name, tuple(c.stations), c.at, c.capacity, tuple(c.holds)) for c in file.carriers],
+        "capacities": file.capacities,
+        "costs": Costs(costs.actions, costs.travel, costs.positions, costs.unit),
+    }
 
 
 def _check_goal_keys(goal: Any, where: str) -> None:
@@ -226,6 +275,9 @@ def make_instance(
     goal: Goal,
     buffers: Iterable[str] = (),
     table: Iterable[str] = (),
+    carriers: Iterable[Carrier] = (),
+    capacities: Mapping[str, int] | None = None,
+    costs: Costs = UNIT_COSTS,
     where: str = "instance",
 ) -> Instance:
     """Build an instance and check it whole.
@@ -241,136 +293,16 @@ def make_instance(
         start={location: tuple(pile) for location, pile in start.items()},
         goal=goal,
         table=tuple(table),
+        carriers=tuple(carriers),
+        capacities=dict(capacities or {}),
+        costs=costs,
     )
-    _Checker(instance, where).check()
-    full_start = {location: instance.start.get(location, ()) for location in instance.locations}
-    return Instance(instance.name, instance.blocks, instance.stacks, instance.buffers, full_start, goal, instance.table)
-
-
-class _Checker:
-    """Refuses an instance that contradicts itself; the first defect found is the one reported."""
-
-    def __init__(self, instance: Instance, where: str) -> None:
-        self.instance = instance
-        self.where = where
-        self.blocks = frozenset(instance.blocks)
-        self.locations = frozenset(instance.locations)
-        self.stacks = frozenset(instance.stacks)
-
-    def refuse(self, part: str, problem: str) -> NoReturn:
-        raise MalformedFile(self.where, f"`{part}`: {problem}")
-
-    def check(self) -> None:
-        self._names()
-        self._start()
-        match self.instance.goal:
-            case StacksGoal() as goal:
-                self._stacks_goal(goal)
-            case PositionsGoal() as goal:
-                self._positions_goal(goal)
-            case OnGoal() as goal:
-                self._on_goal(goal)
-
-    def _names(self) -> None:
-        self._once("blocks", self.instance.blocks)
-        self._once("stacks", self.instance.stacks)
-        self._once("stacks and buffers", self.instance.locations)
-        if not self.instance.stacks:
-            self.refuse("stacks", "at least one location is needed")
-        if TABLE in self.locations:
-            self.refuse("stacks and buffers", f"{TABLE!r} names the table region; call the location otherwise")
-
-    def _start(self) -> None:
-        for location, pile in self.instance.start.items():
-            self._location("start", location, self.locations, "a location of stacks or buffers")
-            for block in pile:
-                self._block(f"start.{location}", block)
-        for block in self.instance.table:
-            self._block("table", block)
-        placed = [block for pile in self.instance.start.values() for block in pile] + list(self.instance.table)
-        self._each_block_once("start and table", placed)
-
-    def _stacks_goal(self, goal: StacksGoal) -> None:
-        for location, pile in goal.stacks.items():
-            self._location("goal.stacks", location, self.stacks, "a location of stacks")
-            for block in pile:
-                self._block(f"goal.stacks.{location}", block)
-        self._each_block_once("goal.stacks", [block for pile in goal.stacks.values() for block in pile])
-
-    def _positions_goal(self, goal: PositionsGoal) -> None:
-        heights: dict[str, dict[int, str]] = {}
-        for block, (location, height) in goal.positions.items():
-            part = f"goal.positions.{block}"
-            self._block("goal.positions", block)
-            self._location(part, location, self.stacks, "a location of stacks")
-            if height < 1:
-                self.refuse(part, f"height {height} is not allowed; 1 is the bottom")
-            other = heights.setdefault(location, {}).setdefault(height, block)
-            if other != block:
-                self.refuse(part, f"height {height} of {location!r} is also the goal of {other!r}")
-        for location, taken in heights.items():
-            for height in sorted(taken):
-                if height > 1 and height - 1 not in taken:
-                    part = f"goal.positions.{taken[height]}"
-                    self.refuse(part, f"height {height} of {location!r} floats: no block has height {height - 1}")
-
-    def _on_goal(self, goal: OnGoal) -> None:
-        carried: dict[str, str] = {}
-        for upper, under in goal.on.items():
-            self._block("goal.on", upper)
-            self._block(f"goal.on.{upper}", under)
-            other = carried.setdefault(under, upper)
-            if other != upper:
-                self.refuse(f"goal.on.{upper}", f"{under!r} already carries {other!r}; a block carries one")
-        self._once("goal.bottom", goal.bottom)
-        for block in goal.bottom:
-            self._block("goal.bottom", block)
-            if block in goal.on:
-                self.refuse("goal.bottom", f"block {block!r} is also on {goal.on[block]!r}")
-        self._acyclic(goal.on)
-
-    def _acyclic(self, on: Mapping[str, str]) -> None:
-        grounded: set[str] = set()
-        for block in on:
-            path: dict[str, None] = {}
-            while block in on and block not in grounded:
-                if block in path:
-                    self.refuse(f"goal.on.{block}", f"the block would stand on itself, through {len(path)} blocks")
-                path[block] = None
-                block = on[block]
-            grounded.update(path)
-
-    def _each_block_once(self, part: str, placed: list[str]) -> None:
-        self._once(part, placed)
-        known = set(placed)
-        missing = [block for block in self.instance.blocks if block not in known]
-        if missing:
-            self.refuse(part, f"block {missing[0]!r} is nowhere; every block stands exactly once")
-
-    def _once(self, part: str, names: Iterable[str]) -> None:
-        seen: set[str] = set()
-        for name in names:
-            if name in seen:
-                self.refuse(part, f"{name!r} stands twice; once is allowed")
-            seen.add(name)
-
-    def _block(self, part: str, block: str) -> None:
-        if block not in self.blocks:
-            self.refuse(part, f"{block!r} is not one of `blocks` ({_listing(self.instance.blocks)})")
-
-    def _location(self, part: str, location: str, allowed: frozenset[str], what: str) -> None:
-        if location not in allowed:
-            names = [name for name in self.instance.locations if name in allowed]
-            self.refuse(part, f"{location!r} is not {what} ({_listing(names)})")
-
-
-def _listing(names: Iterable[str], most: int = 8) -> str:
-    shown = [repr(name) for name in names]
-    return ", ".join(shown[:most]) + (", …" if len(shown) > most else "") if shown else "none"
+    InstanceChecker(instance, where).check()
+    return replace(instance, start={location: instance.start.get(location, ()) for location in instance.locations})
 
 
 def instance_document(instance: Instance) -> dict[str, Any]:
-    """Return the `smash-instance/1` document of an instance; empty locations are left out of `start`."""
+    """Return the document of an instance; empty locations are left out of `start`."""
     match instance.goal:
         case StacksGoal(stacks):
             goal: dict[str, Any] = {"kind": "stacks", "stacks": {k: list(v) for k, v in stacks.items() if v}}
@@ -389,7 +321,19 @@ def instance_document(instance: Instance) -> dict[str, Any]:
     }
     if instance.table:
         document["table"] = list(instance.table)
-    return document
+    additions = _addition_documents(instance)
+    return document | {"format": INSTANCE_FORMAT_2} | additions if additions else document
+
+
+def _addition_documents(instance: Instance) -> dict[str, Any]:
+    additions: dict[str, Any] = {}
+    if instance.carriers:
+        additions["carriers"] = [msgspec.to_builtins(carrier) for carrier in instance.carriers]
+    if instance.capacities:
+        additions["capacities"] = dict(instance.capacities)
+    if instance.costs != UNIT_COSTS:
+        additions["costs"] = msgspec.to_builtins(instance.costs)
+    return additions
 
 
 def _one_key_a_line(document: Mapping[str, Any]) -> str:
@@ -398,7 +342,7 @@ def _one_key_a_line(document: Mapping[str, Any]) -> str:
 
 
 def write_instance(instance: Instance, path: str | os.PathLike[str]) -> None:
-    """Write a `smash-instance/1` file, byte for byte the same for equal instances."""
+    """Write an instance file, byte for byte the same for equal instances."""
     write_text(path, _one_key_a_line(instance_document(instance)))
 
 
@@ -406,17 +350,19 @@ def action_from_list(entry: list[Any], where: str) -> Action:
     """Build an action from its JSON list.
 
     Raises:
-        MalformedFile: where it is none of the three actions.
+        MalformedFile: where it is none.
     """
     match entry:
         case ["pick", str(block), str(source)]:
             return Pick(block, source)
         case ["place", str(block), str(target)]:
             return Place(block, target)
-        case ["topple", str(location), int(height)]:
-            return Topple(location, height)
-    allowed = '["pick", block, source], ["place", block, target] or ["topple", location, height]'
-    raise MalformedFile(where, f"{json.dumps(entry)} is no action; allowed: {allowed}")
+        case [str(name), *_] if name in FAMILY:
+            action: Action | None = FAMILY[name].read(entry)
+            if action is not None:
+                return action
+    forms = ['["pick", block, source]', '["place", block, target]', *(kind.form for kind in FAMILY.values())]
+    raise MalformedFile(where, f"{json.dumps(entry)} is no action; allowed: {', '.join(forms[:-1])} or {forms[-1]}")
 
 
 def action_list(action: Action) -> list[str | int]:
@@ -426,12 +372,12 @@ def action_list(action: Action) -> list[str | int]:
             return ["pick", block, source]
         case Place(block, target):
             return ["place", block, target]
-        case Topple(location, height):
-            return ["topple", location, height]
+        case Aggregating():
+            return kind_of(action).write(action)
 
 
 def read_plan(path: str | os.PathLike[str]) -> Plan:
-    """Read a `smash-plan/1` file; whether it is legal is the law's question, not asked here.
+    """Read a plan file; whether it is legal is the law's question, not asked here.
 
     Raises:
         MalformedFile: with one line that says where and what is allowed.
@@ -441,13 +387,18 @@ def read_plan(path: str | os.PathLike[str]) -> Plan:
 
 
 def plan_from_document(document: Any, where: str = "plan") -> Plan:
-    """Build a plan from a parsed `smash-plan/1` document.
+    """Build a plan from a parsed plan document.
 
     Raises:
         MalformedFile: with one line that says where and what is allowed.
     """
-    check_format(document, PLAN_FORMAT, where)
-    file = cast(_PlanFile, convert(document, _PlanFile, where))
+    check_format(document, where, PLAN_FORMAT, PLAN_FORMAT_2)
+    second = document["format"] == PLAN_FORMAT_2
+    file = cast(_PlanFile, convert(document, _PlanFile2 if second else _PlanFile, where))
+    without = tuple(file.without) if isinstance(file, _PlanFile2) else ()
+    for name in without:
+        if name not in FAMILY:
+            raise MalformedFile(where, f"`without`: {name!r} is not one of {', '.join(FAMILY)}")
     if file.status not in STATUSES:
         raise MalformedFile(where, f"`status`: {file.status!r} is not one of {', '.join(STATUSES)}")
     if file.max_topple is not None and file.max_topple < 1:
@@ -464,7 +415,7 @@ def plan_from_document(document: Any, where: str = "plan") -> Plan:
     return Plan(
         instance=file.instance,
         planner=file.planner,
-        options=PlanOptions(file.topple, file.max_topple),
+        options=PlanOptions(file.topple, file.max_topple, without=without),
         status=cast(Status, file.status),
         actions=actions,
         lower_bound=file.lower_bound,
@@ -475,13 +426,15 @@ def plan_from_document(document: Any, where: str = "plan") -> Plan:
 
 
 def plan_document(plan: Plan) -> dict[str, Any]:
-    """Return the `smash-plan/1` document of a plan."""
+    """Return the document of a plan."""
+    second = _needs_second_version(plan)
     return {
-        "format": PLAN_FORMAT,
+        "format": PLAN_FORMAT_2 if second else PLAN_FORMAT,
         "instance": plan.instance,
         "planner": plan.planner,
         "topple": plan.options.topple,
         "max_topple": plan.options.max_topple,
+        **({"without": list(plan.options.without)} if second else {}),
         "status": plan.status,
         "cost": plan.cost,
         "lower_bound": plan.lower_bound,
@@ -491,11 +444,17 @@ def plan_document(plan: Plan) -> dict[str, Any]:
     }
 
 
+def _needs_second_version(plan: Plan) -> bool:
+    actions = plan.actions or ()
+    further = any(isinstance(action, Aggregating) and kind_of(action).name != "topple" for action in actions)
+    return further or bool(plan.options.without) or plan.cost not in (None, len(actions))
+
+
 def plan_text(plan: Plan) -> str:
-    """Return the text of a `smash-plan/1` file."""
+    """Return the text of a plan file."""
     return _one_key_a_line(plan_document(plan))
 
 
 def write_plan(plan: Plan, path: str | os.PathLike[str]) -> None:
-    """Write a `smash-plan/1` file."""
+    """Write a plan file."""
     write_text(path, plan_text(plan))

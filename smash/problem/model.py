@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field
 
+from smash.problem.costs import UNIT_COSTS, Costs
+
 TABLE = "table"
 """The source name of a pick from the table region; no location may be called so."""
 
@@ -36,18 +38,13 @@ class Place:
         return f"place {self.block!r} on {self.target!r}"
 
 
-@dataclass(frozen=True, slots=True)
-class Topple:
-    """Push every block at `height` and above of `location` into the table region, in one action."""
+class Aggregating:
+    """Base of the actions that move several blocks at once: topple, carry, lift (`smash.problem.aggregating`)."""
 
-    location: str
-    height: int
-
-    def __str__(self) -> str:
-        return f"topple {self.location!r} from height {self.height}"
+    __slots__ = ()
 
 
-Action = Pick | Place | Topple
+Action = Pick | Place | Aggregating
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,8 +92,30 @@ Goal = StacksGoal | PositionsGoal | OnGoal
 
 
 @dataclass(frozen=True, slots=True)
+class Carrier:
+    """A movable thing that holds blocks side by side (the paper's scoop): blocks are picked off and placed on it.
+
+    Attributes:
+        name: a source of picks and a target of places.
+        stations: where it can stand.
+        at: the station where it starts.
+        capacity: most blocks on it.
+        holds: the blocks that start on it.
+    """
+
+    name: str
+    stations: tuple[str, ...]
+    at: str
+    capacity: int
+    holds: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Instance:
     """One rearrangement problem. `start` names every location (empty ones too), bottom first.
+
+    `carriers`, `capacities` (of the aggregating actions that need one: name -> most blocks) and `costs` are what
+    version 2 of the format adds; without them the actions are pick, place and topple, each at cost 1.
 
     Build it by `smash.problem.files` or `make_instance`, which check it; the fields are then trusted.
     """
@@ -108,6 +127,9 @@ class Instance:
     start: Mapping[str, tuple[str, ...]]
     goal: Goal
     table: tuple[str, ...] = ()
+    carriers: tuple[Carrier, ...] = ()
+    capacities: Mapping[str, int] = field(default_factory=dict)
+    costs: Costs = UNIT_COSTS
 
     @property
     def locations(self) -> tuple[str, ...]:
@@ -117,15 +139,29 @@ class Instance:
 
 @dataclass(frozen=True, slots=True)
 class PlanOptions:
-    """What a plan may use: whether `topple` is allowed, and the cap `max_topple` on the blocks of one."""
+    """What a plan may use.
+
+    Attributes:
+        topple: whether topple is allowed.
+        max_topple: most blocks of one topple.
+        without: names of further aggregating actions that are not allowed.
+    """
 
     topple: bool = True
     max_topple: int | None = None
+    without: tuple[str, ...] = field(default=(), kw_only=True)
+
+    def allows(self, name: str) -> bool:
+        """Return whether the aggregating action called `name` is allowed."""
+        return self.topple if name == "topple" else name not in self.without
 
 
 @dataclass(slots=True)
 class State:
     """Where every block is: `piles` per location (bottom first), `table` (the paper's T_a), `hand`.
+
+    `carried` are the blocks on each carrier, `stations` where the carriers stand. `origin` is the place that the held
+    block was taken from, kept where travel costs.
 
     Mutable, so that a plan of any length is checked in time linear in its length; `copy` before you branch.
     """
@@ -133,17 +169,41 @@ class State:
     piles: dict[str, list[str]]
     table: set[str] = field(default_factory=set)
     hand: str | None = None
+    carried: dict[str, set[str]] = field(default_factory=dict)
+    stations: dict[str, str] = field(default_factory=dict)
+    origin: str | None = None
 
     @classmethod
     def start_of(cls, instance: Instance) -> State:
         """Return the start state of `instance`."""
-        piles = {location: list(instance.start.get(location, ())) for location in instance.locations}
-        return cls(piles, set(instance.table))
+        return cls(
+            piles={location: list(instance.start.get(location, ())) for location in instance.locations},
+            table=set(instance.table),
+            carried={carrier.name: set(carrier.holds) for carrier in instance.carriers},
+            stations={carrier.name: carrier.at for carrier in instance.carriers},
+        )
 
     def copy(self) -> State:
         """Return an independent copy."""
-        return State({location: list(pile) for location, pile in self.piles.items()}, set(self.table), self.hand)
+        return State(
+            {location: list(pile) for location, pile in self.piles.items()},
+            set(self.table),
+            self.hand,
+            {name: set(blocks) for name, blocks in self.carried.items()},
+            dict(self.stations),
+            self.origin,
+        )
 
     def key(self) -> Hashable:
         """Return a hashable value that is equal for equal states."""
-        return tuple((k, tuple(v)) for k, v in sorted(self.piles.items())), frozenset(self.table), self.hand
+        return (
+            tuple((k, tuple(v)) for k, v in sorted(self.piles.items())),
+            frozenset(self.table),
+            self.hand,
+            tuple((k, frozenset(v), self.stations[k]) for k, v in sorted(self.carried.items())),
+            self.origin,
+        )
+
+    def place_of(self, name: str) -> str:
+        """Return the point in space that a source or target stands for: a carrier's is its station."""
+        return self.stations.get(name, name)

@@ -1,4 +1,4 @@
-"""A plan as it is filed (`smash-plan/1`), and the check of a whole plan against an instance."""
+"""A plan as it is filed, and the check of a whole plan against an instance."""
 
 from __future__ import annotations
 
@@ -41,8 +41,10 @@ class Plan:
 
     @property
     def cost(self) -> int | None:
-        """The plan's cost: its length (every action counts 1)."""
-        return None if self.actions is None else len(self.actions)
+        """The plan's cost: the stated one, or its length where none is stated (every action then counts 1)."""
+        if self.actions is None:
+            return None
+        return len(self.actions) if self.stated_cost is None else self.stated_cost
 
 
 def check_plan(instance: Instance, plan: Plan) -> Verdict:
@@ -51,13 +53,16 @@ def check_plan(instance: Instance, plan: Plan) -> Verdict:
         return Verdict(False, f"the plan is for instance {plan.instance!r}, not {instance.name!r}")
     if plan.actions is None:
         return Verdict(False, f"the file holds no plan (status {plan.status})")
-    if plan.stated_cost is not None and plan.stated_cost != len(plan.actions):
-        return Verdict(False, f"its cost says {plan.stated_cost}, its length is {len(plan.actions)}")
     verdict = Law(instance, plan.options).check(plan.actions)
-    if not verdict.accepted or plan.lower_bound is None:
+    if not verdict.accepted:
         return verdict
-    if plan.lower_bound > len(plan.actions):
-        return Verdict(False, f"its lower bound {plan.lower_bound} is above its cost {len(plan.actions)}")
-    if plan.status == "optimal" and plan.lower_bound < len(plan.actions):
+    if plan.cost != verdict.cost:
+        counted = "its length" if instance.costs.plain else "what its actions cost"
+        return Verdict(False, f"its cost says {plan.cost}, {counted} is {verdict.cost}")
+    if plan.lower_bound is None or plan.cost is None:
+        return verdict
+    if plan.lower_bound > plan.cost:
+        return Verdict(False, f"its lower bound {plan.lower_bound} is above its cost {plan.cost}")
+    if plan.status == "optimal" and plan.lower_bound < plan.cost:
         return Verdict(False, f"it says optimal, but its lower bound {plan.lower_bound} is below its cost")
     return verdict

@@ -6,12 +6,14 @@ Every other part of the testbed asks this module; nobody else decides what a pic
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from smash.problem.errors import IllegalAction
+from smash.problem.family import kind_of, kinds_of
 from smash.problem.model import (
     TABLE,
     Action,
+    Aggregating,
     Instance,
     OnGoal,
     Pick,
@@ -20,17 +22,20 @@ from smash.problem.model import (
     PositionsGoal,
     StacksGoal,
     State,
-    Topple,
 )
 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """The checker's answer: accepted, or refused with the reason and the 1-based step (None: the plan as a whole)."""
+    """The checker's answer: accepted, or refused with the reason and the 1-based step (None: the plan as a whole).
+
+    `cost` is the plan's cost where every step is legal.
+    """
 
     accepted: bool
     reason: str = ""
     step: int | None = None
+    cost: int | None = field(default=None, compare=False)
 
     def __str__(self) -> str:
         if self.accepted:
@@ -44,7 +49,9 @@ class Law:
     def __init__(self, instance: Instance, options: PlanOptions | None = None) -> None:
         self.instance = instance
         self.options = options or PlanOptions()
-        self._topple_locations = frozenset(instance.stacks)
+        self._room = {carrier.name: carrier.capacity for carrier in instance.carriers}
+        self._kinds = kinds_of(instance, self.options)
+        self._carries = any(kind.name == "carry" for kind in self._kinds)
 
     def refusal(self, state: State, action: Action) -> str | None:
         """Return why `action` is illegal in `state`, or None if it is legal."""
@@ -53,8 +60,22 @@ class Law:
                 return self._pick_refusal(state, action)
             case Place():
                 return self._place_refusal(state, action)
-            case Topple():
-                return self._topple_refusal(state, action)
+            case Aggregating():
+                return self._aggregating_refusal(state, action)
+
+    def cost(self, state: State, action: Action) -> int:
+        """Return what a legal `action` costs in `state`, the state before it."""
+        costs = self.instance.costs
+        match action:
+            case Pick():
+                return costs.of("pick")
+            case Place(_, target):
+                way = None if state.origin is None else (state.origin, state.place_of(target))
+                return costs.of("place") + (costs.distance(*way) if way else 0)
+            case Aggregating():
+                kind = kind_of(action)
+                way = kind.way(state, action)
+                return costs.of(kind.name) + (costs.distance(*way) if way else 0)
 
     def apply(self, state: State, action: Action) -> None:
         """Carry out `action` on `state`, in place.
@@ -65,34 +86,37 @@ class Law:
         reason = self.refusal(state, action)
         if reason is not None:
             raise IllegalAction(f"{action}: {reason}")
+        self._carry_out(state, action)
+
+    def _carry_out(self, state: State, action: Action) -> None:
         match action:
             case Pick(block, source):
-                if source == TABLE:
-                    state.table.remove(block)
-                else:
+                if source in state.piles:
                     state.piles[source].pop()
+                else:
+                    (state.table if source == TABLE else state.carried[source]).remove(block)
                 state.hand = block
+                state.origin = state.place_of(source) if self.instance.costs.travel else None
             case Place(block, target):
-                state.piles[target].append(block)
-                state.hand = None
-            case Topple(location, height):
-                pile = state.piles[location]
-                state.table.update(pile[height - 1 :])
-                del pile[height - 1 :]
+                if target in state.piles:
+                    state.piles[target].append(block)
+                else:
+                    state.carried[target].add(block)
+                state.hand = state.origin = None
+            case Aggregating():
+                kind_of(action).apply(state, action)
 
     def legal_actions(self, state: State) -> Iterator[Action]:
         """Yield every legal action in `state`."""
         if state.hand is not None:
             yield from (Place(state.hand, location) for location in self.instance.locations)
+            yield from (Place(state.hand, name) for name in state.carried if self._carrier_refusal(state, name) is None)
             return
         yield from (Pick(pile[-1], location) for location, pile in state.piles.items() if pile)
         yield from (Pick(block, TABLE) for block in sorted(state.table))
-        if not self.options.topple:
-            return
-        for location in self.instance.stacks:
-            height = len(state.piles[location])
-            lowest = 1 if self.options.max_topple is None else max(1, height - self.options.max_topple + 1)
-            yield from (Topple(location, cut) for cut in range(lowest, height + 1))
+        yield from (Pick(block, name) for name, blocks in state.carried.items() for block in sorted(blocks))
+        for kind in self._kinds:
+            yield from kind.legal(self.instance, self.options, state)
 
     def goal_shortfall(self, state: State) -> str | None:
         """Return what `state` lacks for the goal, in words, or None where the goal holds."""
@@ -109,13 +133,34 @@ class Law:
     def check(self, actions: Iterable[Action]) -> Verdict:
         """Replay `actions` from the start and judge them: every step legal and the goal held at the end."""
         state = State.start_of(self.instance)
+        total = 0
+        plain = self.instance.costs.plain
         for step, action in enumerate(actions, start=1):
-            try:
-                self.apply(state, action)
-            except IllegalAction as error:
-                return Verdict(False, str(error), step)
+            reason = self.refusal(state, action)
+            if reason is not None:
+                return Verdict(False, f"{action}: {reason}", step)
+            total += 1 if plain else self.cost(state, action)
+            self._carry_out(state, action)
         shortfall = self.goal_shortfall(state)
-        return Verdict(True) if shortfall is None else Verdict(False, f"goal not reached: {shortfall}")
+        return Verdict(shortfall is None, f"goal not reached: {shortfall}" if shortfall else "", cost=total)
+
+    def price(self, actions: Sequence[Action]) -> int:
+        """Return the cost of legal actions from the start on.
+
+        Raises:
+            IllegalAction: at the first action that the law refuses.
+        """
+        if self.instance.costs.plain:
+            return len(actions)
+        state = State.start_of(self.instance)
+        total = 0
+        for action in actions:
+            reason = self.refusal(state, action)
+            if reason is not None:
+                raise IllegalAction(f"{action}: {reason}")
+            total += self.cost(state, action)
+            self._carry_out(state, action)
+        return total
 
     def states(self, actions: Sequence[Action]) -> Iterator[State]:
         """Yield an independent copy of the start state and of the state after each action.
@@ -134,6 +179,8 @@ class Law:
             return f"the hand holds {state.hand!r}"
         if action.source == TABLE:
             return None if action.block in state.table else "the block is not in the table region"
+        if action.source in state.carried:
+            return None if action.block in state.carried[action.source] else f"the block is not on {action.source!r}"
         pile = state.piles.get(action.source)
         if pile is None:
             return f"no location is called {action.source!r}"
@@ -147,22 +194,25 @@ class Law:
             return f"the hand {held}"
         if action.target == TABLE:
             return "nothing is placed in the table region"
+        if action.target in state.carried:
+            return self._carrier_refusal(state, action.target)
         return None if action.target in state.piles else f"no location is called {action.target!r}"
 
-    def _topple_refusal(self, state: State, action: Topple) -> str | None:
-        if not self.options.topple:
-            return "topple is not allowed"
+    def _carrier_refusal(self, state: State, carrier: str) -> str | None:
+        if not self._carries:
+            return "carry is not allowed, hence nothing is placed on a carrier"
+        room = self._room[carrier]
+        return None if len(state.carried[carrier]) < room else f"{carrier!r} is full: it holds {room}"
+
+    def _aggregating_refusal(self, state: State, action: Aggregating) -> str | None:
+        kind = kind_of(action)
+        if not self.options.allows(kind.name):
+            return f"{kind.name} is not allowed"
+        if kind not in self._kinds:
+            return f"the instance has no {kind.name}"
         if state.hand is not None:
             return f"the hand holds {state.hand!r}"
-        if action.location not in self._topple_locations:
-            known = action.location in state.piles
-            return "buffers are not toppled" if known else f"no location is called {action.location!r}"
-        pile = state.piles[action.location]
-        if not 1 <= action.height <= len(pile):
-            return f"no block falls: the location holds {len(pile)}, heights count from 1"
-        falling = len(pile) - action.height + 1
-        cap = self.options.max_topple
-        return None if cap is None or falling <= cap else f"{falling} blocks fall, max_topple is {cap}"
+        return kind.refusal(self.instance, self.options, state, action)
 
 
 def _stacks_shortfall(goal: StacksGoal, state: State) -> str | None:
@@ -170,6 +220,9 @@ def _stacks_shortfall(goal: StacksGoal, state: State) -> str | None:
         wanted = goal.stacks.get(location, ())
         if tuple(pile) != tuple(wanted):
             return f"location {location!r} holds {pile}, wanted {list(wanted)}"
+    for carrier, blocks in state.carried.items():
+        if blocks:
+            return f"carrier {carrier!r} holds {sorted(blocks)}"
     return f"the table region holds {sorted(state.table)}" if state.table else None
 
 

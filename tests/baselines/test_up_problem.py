@@ -6,7 +6,7 @@ from baselines.encodings import TOPPLE_ENCODINGS, unsupported_reason
 from baselines.steps import steps_of
 from baselines.task import compile_instance
 from smash.problem import Law, PlanOptions, State
-from smash.problem.model import Topple
+from smash.problem.topple import Topple
 from tests.baselines.test_encodings import random_walk
 from tests.strategies import instances, plan_options
 

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from smash.gadget.encode import encode
 from smash.gadget.motion import PebbleMotion
 from smash.planners.flow.scope import Scope
-from smash.problem.model import TABLE, Action, Instance, Pick, Place, State
+from smash.problem.family import kind_of
+from smash.problem.model import TABLE, Action, Aggregating, Instance, Pick, Place, State
 
 
 def motion_of(scope: Scope, instance: Instance, actions: Sequence[Action]) -> PebbleMotion:
@@ -43,9 +44,8 @@ class _Renaming:
                     renamed.append(self._pick(block, source))
                 case Place(block, target):
                     renamed.append(self._place(block, target))
-                case _:
-                    pile = self._state.piles[action.location]
-                    del pile[action.height - 1 :]
+                case Aggregating():
+                    kind_of(action).apply(self._state, action)
                     renamed.append(action)
         return renamed
 

@@ -15,7 +15,8 @@ import numpy as np
 from smash.planners.demands import Demands
 from smash.planners.layered.events import TOPPLE_COST, TRANSFER_COST
 from smash.planners.milp import Floats, Ints, Milp, MilpBuilder
-from smash.problem.model import TABLE, Action, Instance, OnGoal, Pick, Place, PlanOptions, State, Topple
+from smash.problem.model import TABLE, Action, Instance, OnGoal, Pick, Place, PlanOptions, State
+from smash.problem.topple import Topple
 
 
 @dataclass(frozen=True, slots=True)

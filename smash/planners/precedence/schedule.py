@@ -15,7 +15,8 @@ from time import perf_counter
 
 from smash.planners.demands import Demands, Pile
 from smash.planners.precedence.graph import Choice
-from smash.problem.model import TABLE, Action, Instance, OnGoal, Pick, Place, Topple
+from smash.problem.model import TABLE, Action, Instance, OnGoal, Pick, Place
+from smash.problem.topple import Topple
 
 Event = tuple[str, str]
 Segments = dict[str, list[tuple[int, int]]]

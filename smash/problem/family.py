@@ -1,0 +1,26 @@
+"""The aggregating actions that there are. A new one is a file of its own and a line here."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from smash.problem.aggregating import AggregatingKind, allowed
+from smash.problem.carry import CarryKind
+from smash.problem.lift import LiftKind
+from smash.problem.model import Aggregating, Instance, PlanOptions
+from smash.problem.topple import ToppleKind
+
+FAMILY: dict[str, AggregatingKind[Any]] = {kind.name: kind for kind in (ToppleKind(), CarryKind(), LiftKind())}
+"""Kinds of aggregating actions by name."""
+
+_BY_CLASS: dict[type[Aggregating], AggregatingKind[Any]] = {kind.action: kind for kind in FAMILY.values()}
+
+
+def kind_of(action: Aggregating) -> AggregatingKind[Any]:
+    """Return the kind of an action."""
+    return _BY_CLASS[type(action)]
+
+
+def kinds_of(instance: Instance, options: PlanOptions) -> list[AggregatingKind[Any]]:
+    """Return the kinds of aggregating actions that plans of `instance` may use, in the family's order."""
+    return [kind for kind in FAMILY.values() if allowed(kind, instance, options)]
