@@ -47,7 +47,7 @@ def on(wanted, **more):
     ("change", "words"),
     [
         ({"extra": 1}, "unknown field `extra`; allowed: format, name"),
-        ({"format": "smash-instance/9"}, "'smash-instance/1' is"),
+        ({"format": "smash-instance/9"}, "'smash-instance/1' and 'smash-instance/2' are"),
         ({"name": 3}, "Expected `str`, got `int` - at `name`"),
         ({"blocks": "b1"}, "at `blocks`"),
         ({"blocks": ["b1", "b2", "b3", "b3"]}, "`blocks`: 'b3' stands twice"),
@@ -89,7 +89,7 @@ def test_a_malformed_instance_is_refused_in_one_line(change, words):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"format": "smash-instance/1"}, "'smash-plan/1' is"),
+        ({"format": "smash-instance/1"}, "'smash-plan/1' and 'smash-plan/2' are"),
         ({"extra": 1}, "unknown field"),
         ({"status": "great"}, "not one of optimal, feasible"),
         ({"actions": [["fly", "b1"]]}, "is no action; allowed"),

@@ -61,7 +61,7 @@ def _words(actions: Sequence[Action]) -> Iterator[str]:
         if isinstance(action, Pick) and isinstance(following, Place):
             yield f"{short(action.block, 8)}: {short(action.source, 9)} → {short(following.target, 9)}"
         elif not isinstance(action, Pick | Place):
-            yield short(str(action), 40)
+            yield short(str(action).replace("'", ""), 40)
 
 
 def places(motion: PebbleMotion, layout: Layout, layer: int) -> list[Point]:
