@@ -1,5 +1,7 @@
 """The aggregating actions beside topple, carriers and costs: what the law says of them, and their files."""
 
+from dataclasses import replace
+
 import pytest
 
 from smash.problem import (
@@ -179,8 +181,9 @@ def test_a_malformed_addition_is_refused_in_one_line(changes, words):
 
 def test_the_scoop_pays_where_distance_counts_and_only_there():
     small = {"blocks": ["a", "c"], "start": {"s1": ["a"], "s2": ["c"]}, "capacities": {}}
-    with_tray = cheapest_plan(scoop(**small))
-    without = cheapest_plan(scoop(**small), PlanOptions(without=("carry",)))
+    far = scoop(**small, costs=replace(COSTS, travel=300.0))
+    with_tray = cheapest_plan(far)
+    without = cheapest_plan(far, PlanOptions(without=("carry",)))
     assert with_tray[0] < without[0]
     assert Carry("tray", "right") in with_tray[1]
     assert cheapest_plan(scoop(**small, costs=Costs()))[0] == 4
