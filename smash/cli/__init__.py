@@ -32,6 +32,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "scaling": ("smash.cli.scaling", "run planners over growing sizes, for curves of time against blocks"),
     "frontier": ("smash.cli.frontier", "show what buffers buy: the exact cost against their number"),
     "sweep": ("smash.cli.sweep", "run an experiment file: planners, instances, budgets, buffers, variants"),
+    "reproduce": ("smash.cli.reproduce", "make every table and figure from nothing, with a manifest"),
     "records": ("smash.cli.records", "check the records of a sweep, or write them as tables"),
 }
 """Subcommand -> (module that holds a click command called `command`, one line of help)."""

@@ -1,20 +1,24 @@
 """`python -m smash.experiments.benchmark`: first plans, proofs and solvers, measured side by side in one process.
 
 Prints the Markdown tables of the README's results: `layered` (first incumbent and proof on the committed sets),
-`solvers` (HiGHS against Gurobi on the same arrays), `large` (proofs at hundreds of blocks).
+`solvers` (HiGHS against Gurobi on the same arrays), `large` (proofs at hundreds of blocks). With `--out DIR` each is
+written to DIR/NAME.md too.
 """
 
 from __future__ import annotations
 
+import argparse
 import random
 import statistics
 import sys
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from time import perf_counter
 
 from smash.planners.protocol import PlanResult, SolveOptions
 from smash.planners.registry import get_planner
 from smash.problem.errors import SmashError
+from smash.problem.files import write_text
 from smash.problem.model import Instance
 from smash.problem.open_instances import Shape, draw_instance
 from smash.problem.suites import PAPER_SUITES, read_suite
@@ -91,7 +95,11 @@ TABLES = {"layered": layered_rows, "solvers": solver_rows, "large": large_rows}
 
 def main() -> None:
     """Print the tables that are named on the command line, or all."""
-    names = sys.argv[1:] or list(TABLES)
+    parser = argparse.ArgumentParser(prog="python -m smash.experiments.benchmark", description=__doc__)
+    parser.add_argument("tables", nargs="*", metavar="TABLE", help=f"of {', '.join(TABLES)} (default: all)")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write each table to DIR/NAME.md too")
+    arguments = parser.parse_args()
+    names = arguments.tables or list(TABLES)
     unknown = [name for name in names if name not in TABLES]
     if unknown:
         sys.exit(f"benchmark: no table is called {unknown[0]!r}; known: {', '.join(TABLES)}")
@@ -101,10 +109,19 @@ def main() -> None:
             prepare()
     try:
         for name in names:
-            for row in TABLES[name]():
-                print(row, flush=True)
+            _make(name, arguments.out)
     except SmashError as error:
         sys.exit(f"benchmark: {error}")
+
+
+def _make(name: str, out: Path | None) -> None:
+    rows = []
+    for row in TABLES[name]():
+        print(row, flush=True)
+        rows.append(row)
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+        write_text(out / f"{name}.md", "\n".join(rows) + "\n")
 
 
 if __name__ == "__main__":

@@ -22,6 +22,7 @@ from types import FrameType
 from typing import TYPE_CHECKING, Any, BinaryIO, NoReturn
 
 from smash.experiments.job import STARTUP_LIMIT, Job, grace
+from smash.experiments.lifetime import end_with_parent, prctl
 from smash.experiments.solving import solve
 
 if TYPE_CHECKING:
@@ -31,7 +32,6 @@ SAMPLING = 0.1
 """Seconds between two looks at the tree's memory."""
 SAID_LINES = 20
 
-_PR_SET_PDEATHSIG = 1
 _PR_SET_CHILD_SUBREAPER = 36
 
 
@@ -40,7 +40,7 @@ def main() -> None:
     signal.signal(signal.SIGTERM, _leave)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     job = Job.from_document(json.loads(sys.stdin.buffer.readline()))
-    _prctl(_PR_SET_CHILD_SUBREAPER, 1)
+    prctl(_PR_SET_CHILD_SUBREAPER, 1)
     with tempfile.TemporaryDirectory(prefix="smash-run-", ignore_cleanup_errors=True) as scratch:
         os.environ["TMPDIR"] = scratch
         tempfile.tempdir = None
@@ -57,14 +57,6 @@ def _leave(signum: int, frame: FrameType | None) -> NoReturn:
     raise SystemExit(128 + signum)
 
 
-def _prctl(option: int, argument: int) -> None:
-    """Call Linux's `prctl`; elsewhere the closed standard input is what ends a run."""
-    if sys.platform == "linux":
-        import ctypes
-
-        ctypes.CDLL(None, use_errno=True).prctl(option, argument, 0, 0, 0)
-
-
 def _start(job: Job, said: BinaryIO) -> tuple[int, int]:
     """Fork the planner's process; return the pipe on which it talks and its process id."""
     reading, writing = os.pipe()
@@ -74,7 +66,7 @@ def _start(job: Job, said: BinaryIO) -> tuple[int, int]:
         os.close(writing)
         os.set_blocking(reading, False)
         return reading, planner
-    _prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    end_with_parent()
     if os.getppid() != guardian:
         os._exit(1)
     for number in (signal.SIGTERM, signal.SIGINT):

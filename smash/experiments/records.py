@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 from collections.abc import Iterator
@@ -14,16 +13,13 @@ from typing import Any, Self
 from smash.experiments.environment import commit, load, machine, versions
 from smash.experiments.experiment import Run, instance_hash
 from smash.experiments.job import Report
-from smash.problem.errors import MalformedFile, SmashError
+from smash.experiments.locking import hold
+from smash.problem.errors import MalformedFile
 from smash.problem.files import instance_document, plan_document
 
 RUN_FORMAT = "smash-run/1"
 RUNS = "runs.jsonl"
 DAMAGED = "runs.damaged"
-
-
-class InUse(SmashError):
-    """Another sweep is writing to the same directory."""
 
 
 def record_of(run: Run, report: Report, started: datetime, load_before: float) -> dict[str, Any]:
@@ -84,16 +80,11 @@ class Records:
         self.path = directory / name
         self.wanted = wanted
         self.set_aside = 0
+        self._lock = hold(directory)
         try:
-            directory.mkdir(parents=True, exist_ok=True)
-            self._lock = open(directory / ".lock", "w")  # noqa: SIM115 - held until close
-            self._file = open(self.path, "a+b")  # noqa: SIM115
+            self._file = open(self.path, "a+b")  # noqa: SIM115 - open until `__exit__`
         except OSError as error:
-            raise MalformedFile(str(directory), f"cannot be written: {error.strerror}") from None
-        try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            raise InUse(f"{directory}: another sweep is writing there; wait for it, or give another --out") from None
+            raise MalformedFile(str(self.path), f"cannot be written: {error.strerror}") from None
         self._repair(directory / (DAMAGED if name == RUNS else f"{self.path.stem}.damaged"))
         self.commits = {
             record["key"]: (record.get("commit") or {}).get("hash") for record in read_records(self.path, wanted)

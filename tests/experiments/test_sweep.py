@@ -12,7 +12,8 @@ from contextlib import suppress
 import psutil
 import pytest
 
-from smash.experiments.records import DAMAGED, RUNS, InUse, Records
+from smash.experiments.locking import InUse
+from smash.experiments.records import DAMAGED, RUNS, Records
 from smash.problem import MalformedFile
 
 pytestmark = pytest.mark.usefixtures("third_party")

@@ -1,0 +1,251 @@
+"""A reproduction: each step once, continued after a kill, made anew where its inputs have changed, with a manifest."""
+
+import json
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+import psutil
+import pytest
+from click.testing import CliRunner
+
+from smash.cli import smash
+from smash.experiments.steps import file_hash, read_steps
+from smash.problem import MalformedFile
+
+ROOT = Path(__file__).parents[2]
+NOTE = """
+import pathlib, sys, time
+folder, words = pathlib.Path(sys.argv[1]), sys.argv[2:]
+for word in words:
+    if not (folder / word).exists():
+        time.sleep(0.5 if word == "slow" else 0)
+        (folder / word).write_text(word)
+    with open(folder / "starts", "a") as starts:
+        starts.write(word + " ")
+"""
+"""A command that makes each file that is not there yet, and notes what it was asked for."""
+
+
+def step(name, words, more=""):
+    command = f"python {{here}}/note.py {{out}}/{name} {words}"
+    return f"""[[steps]]
+name = "{name}"
+about = "makes {words}"
+minutes = 0.1
+commands = ['{command}']
+products = ["{name}/*"]
+{more}
+"""
+
+
+@pytest.fixture
+def steps(tmp_path):
+    """Write a list of steps; return its file."""
+
+    def write(*parts):
+        (tmp_path / "note.py").write_text(NOTE)
+        file = tmp_path / "tiny.toml"
+        file.write_text('name = "tiny"\nabout = "A tiny one."\n' + "".join(parts))
+        return file
+
+    return write
+
+
+def command(file, out, *more):
+    return [sys.executable, "-m", "smash", "reproduce", "--steps", str(file), "--out", str(out), *map(str, more)]
+
+
+class Ended(NamedTuple):
+    returncode: int
+    stdout: str
+    error: str
+
+
+def reproduce(file, out, *more):
+    """Run the command in this process (its steps have processes of their own)."""
+    ended = CliRunner().invoke(smash, [*command(file, out, *more)[3:]])
+    code = getattr(ended.exception, "exit_code", ended.exit_code)
+    return Ended(code, ended.stdout, str(ended.exception or ""))
+
+
+def test_a_second_run_does_nothing_and_says_so(steps, tmp_path):
+    file, out = steps(step("one", "a"), step("two", "b", 'needs = ["one"]\nleaves_out = "the rest"')), tmp_path / "out"
+    first = reproduce(file, out)
+    assert first.returncode == 0, first.error
+    assert "2 of 2 steps to do" in first.stdout
+    page = (out / "MANIFEST.md").read_text()
+    again = reproduce(file, out)
+    assert "nothing to do" in again.stdout
+    assert (out / "one" / "starts").read_text() == "a "
+    assert (out / "MANIFEST.md").read_text() == page
+
+
+def test_the_manifest_says_what_was_run_where_and_what_came_out(steps, tmp_path):
+    file, out = steps(step("one", "a", 'leaves_out = "the rest, for time"')), tmp_path / "out"
+    assert reproduce(file, out, "--copy-to", tmp_path / "copy").returncode == 0
+    document = json.loads((out / "manifest.json").read_text())
+    (made,) = document["steps"]
+    assert document["whole"]
+    assert made["state"] == "run"
+    assert made["products"]["one/a"] == {"sha256": file_hash(out / "one" / "a"), "bytes": 1}
+    assert set(made["load_average"]) == {"before", "mean", "most"}
+    assert document["machine"]["cores"] >= 1
+    assert document["versions"][0]["python"].startswith("3.")
+    page = (out / "MANIFEST.md").read_text()
+    assert "one: the rest, for time" in page
+    assert file_hash(out / "one" / "a") in page
+    assert (tmp_path / "copy" / "one" / "a").read_text() == "a"
+    assert (tmp_path / "copy" / "MANIFEST.md").read_text() == page
+
+
+def test_a_changed_input_makes_its_step_and_those_after_it_anew(steps, tmp_path):
+    file, out = steps(step("one", "a"), step("two", "b", 'needs = ["one"]')), tmp_path / "out"
+    reproduce(file, out)
+    steps(step("one", "a c"), step("two", "b", 'needs = ["one"]'))
+    planned = reproduce(file, out, "--dry-run").stdout
+    assert planned.count("stale") == 2
+    assert "its commands have changed" in planned
+    assert (out / "one" / "starts").read_text() == "a "
+    kept = reproduce(file, out, "--keep-stale")
+    assert kept.stdout.count("kept") == 1
+    assert "was kept, although its commands have changed" in (out / "MANIFEST.md").read_text()
+    assert reproduce(file, out).returncode == 0
+    assert (out / "one" / "starts").read_text() == "a c "
+    assert (out / "stale" / "one-1" / "one" / "starts").read_text() == "a "
+    assert "nothing to do" in reproduce(file, out).stdout
+
+
+def test_a_file_that_a_command_names_is_an_input(steps, tmp_path):
+    file, out = steps(step("one", "a")), tmp_path / "out"
+    reproduce(file, out)
+    (tmp_path / "note.py").write_text(NOTE + "\n# changed")
+    assert "note.py has changed" in reproduce(file, out, "--dry-run").stdout
+
+
+def test_a_missing_product_is_made_again_and_a_changed_one_from_nothing(steps, tmp_path):
+    file, out = steps(step("one", "a b")), tmp_path / "out"
+    reproduce(file, out)
+    (out / "one" / "a").unlink()
+    reproduce(file, out)
+    assert (out / "one" / "starts").read_text() == "a b a b "
+    (out / "one" / "b").write_text("forged")
+    assert "one/b is not as it was made" in reproduce(file, out, "--dry-run").stdout
+    reproduce(file, out)
+    assert (out / "one" / "b").read_text() == "b"
+
+
+def test_a_killed_step_is_continued_and_nothing_of_it_lives_on(steps, tmp_path):
+    file, out = steps(step("one", "a slow b"), step("two", "c")), tmp_path / "out"
+    running = subprocess.Popen(command(file, out), stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    while not (out / "one" / "a").exists():
+        time.sleep(0.01)
+    below = psutil.Process(running.pid).children(recursive=True)
+    running.send_signal(signal.SIGKILL)
+    running.wait()
+    assert psutil.wait_procs(below, timeout=5)[1] == []
+    planned = reproduce(file, out, "--dry-run").stdout
+    assert "continued" in planned
+    assert "it was killed" in planned
+    assert reproduce(file, out).returncode == 0
+    assert (out / "one" / "starts").read_text() == "a a slow b "
+    assert "in 2 starts" in (out / "MANIFEST.md").read_text()
+    assert "nothing to do" in reproduce(file, out).stdout
+
+
+def test_an_interrupted_one_says_so_and_writes_what_it_has(steps, tmp_path):
+    file, out = steps(step("one", "a"), step("two", "slow " * 40)), tmp_path / "out"
+    running = subprocess.Popen(command(file, out), stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+    while not (out / "two").exists():
+        time.sleep(0.01)
+    running.send_signal(signal.SIGINT)
+    _, said = running.communicate(timeout=20)
+    assert running.returncode == 130
+    assert said.splitlines()[-1] == "smash: interrupted; start again to go on"
+    assert [made["state"] for made in json.loads((out / "manifest.json").read_text())["steps"]] == ["run", "not run"]
+
+
+def test_a_step_that_fails_is_named_and_stops_only_those_that_need_it(steps, tmp_path):
+    bad = step("bad", "a").replace("python {here}", "python {here}/nowhere")
+    file = steps(bad, step("after", "b", 'needs = ["bad"]'), step("apart", "c"), step("lacks", "d", LACKS))
+    ended = reproduce(file, tmp_path / "out")
+    assert ended.returncode == 2
+    assert ended.error.startswith("step bad: `python {here}/nowhere")
+    states = {made["name"]: made for made in json.loads((tmp_path / "out" / "manifest.json").read_text())["steps"]}
+    assert [made["state"] for made in states.values()] == ["failed", "not run", "run", "not run"]
+    assert states["after"]["why"] == "it needs bad"
+    assert states["lacks"]["why"] == "not installed: no-such-package"
+
+
+LACKS = 'requires = ["no-such-package"]'
+
+
+@pytest.mark.parametrize(
+    ("part", "problem"),
+    [
+        (step("../one", "a"), "steps[0].name"),
+        (step("logs", "a"), "steps[0].name"),
+        (step("one", "a") * 2, "stands twice"),
+        (step("one", "a", 'needs = ["two"]'), "no earlier step"),
+        (step("one", "a").replace("python", "rm"), "does not begin with smash or python"),
+        (step("one", "a").replace('"one/*"', '"../*"'), "does not lie in the step's folder"),
+        (step("one", "a").replace("minutes = 0.1", ""), "minutes"),
+        ("", "steps"),
+    ],
+)
+def test_a_bad_list_is_refused_in_one_line(steps, tmp_path, part, problem):
+    with pytest.raises(MalformedFile, match=re.escape(problem)):
+        read_steps(steps(part))
+
+
+@pytest.mark.parametrize("name", ["reproduce", "reproduce-full"])
+def test_the_committed_lists_name_files_that_are_there(name):
+    steps = read_steps(ROOT / "experiments" / f"{name}.toml")
+    assert steps.name == name
+    named = [word for step in steps.steps for command in step.commands for word in command.split()]
+    assert all((ROOT / "experiments" / word[7:]).is_file() for word in named if word.startswith("{here}/"))
+
+
+def test_the_small_grid_is_said_to_take_at_most_ninety_minutes():
+    assert sum(step.minutes for step in read_steps(ROOT / "experiments" / "reproduce.toml").steps) <= 90
+
+
+@pytest.mark.slow
+def test_real_steps_from_sweep_to_figures(tmp_path):
+    (tmp_path / "few.toml").write_text(
+        'name = "few"\nsuites = ["multi-4"]\ninstances = 2\nbuffers = [0, 2]\nbudgets = [0.5, 1]\ncutoff_sample = 1\n'
+        '[[planners]]\nname = "smash-layered"\n'
+    )
+    (tmp_path / "tiny.toml").write_text(
+        """name = "tiny"
+about = "Tiny."
+[[steps]]
+name = "ablation"
+about = "heatmaps"
+minutes = 1
+commands = ["smash sweep {here}/few.toml --out {out}/ablation", "python -m analysis.ablation {out}/ablation"]
+products = ["ablation/runs.jsonl", "ablation/ablation/*"]
+[[steps]]
+name = "frontier"
+about = "frontier"
+minutes = 1
+commands = ["smash frontier multi-4 --most 2 --instances 2 --out {out}/frontier"]
+products = ["frontier/*"]
+"""
+    )
+    out = tmp_path / "out"
+    running = subprocess.Popen(command(tmp_path / "tiny.toml", out), stderr=subprocess.DEVNULL)
+    while not ((out / "ablation" / "runs.jsonl").exists() and (out / "ablation" / "runs.jsonl").read_text()):
+        time.sleep(0.02)
+    running.send_signal(signal.SIGKILL)
+    running.wait()
+    ended = reproduce(tmp_path / "tiny.toml", out)
+    assert ended.returncode == 0, ended.error
+    assert "continued" in ended.stdout
+    keys = [json.loads(line)["key"] for line in (out / "ablation" / "runs.jsonl").read_text().splitlines()]
+    assert len(keys) == len(set(keys))
+    assert "nothing to do" in reproduce(tmp_path / "tiny.toml", out).stdout
