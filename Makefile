@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
-.PHONY: help test test-slow lint suites ablation ablation-full bench scaling compare compare-full tables tables-full topple-map
+.PHONY: help test test-slow lint suites ablation ablation-full bench scaling compare compare-full tables tables-full topple-map reproduce reproduce-full results
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -69,3 +69,15 @@ compare-full: $(STAMP) ## all planners on all of the committed sets (a day or mo
 	$(BIN)/python -m smash sweep experiments/compare-full.toml --out runs/compare-full --dry-run
 	$(BIN)/python -m smash sweep experiments/compare-full.toml --out runs/compare-full
 	$(BIN)/python -m analysis.comparison runs/compare-full
+
+reproduce: $(STAMP) ## every table and figure, the paper's and ours, on stated small grids (about an hour; it can be resumed)
+	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt gurobipy
+	$(BIN)/python -m smash reproduce
+
+reproduce-full: $(STAMP) ## the same on the whole grids (days; says how many hours first; it can be resumed)
+	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt gurobipy
+	$(BIN)/python -m smash reproduce --full
+
+results: reproduce ## keep the products of `make reproduce` in results/, and draw the README's figures from them
+	$(BIN)/python -m smash reproduce --copy-to results
+	$(BIN)/python -m analysis.readme

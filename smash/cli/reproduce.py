@@ -125,7 +125,7 @@ class _Progress:
         self._number += 1
         self._log, self._said = log, monotonic()
         self._words = f"[{self._number}/{self._total}] {planned.step.name}"
-        click.echo(f"{self._words}: about {minutes(60 * planned.step.minutes)}; its output: {log}", err=True)
+        self._say(f"{self._words}: about {minutes(60 * planned.step.minutes)}; its output: {log}")
 
     def running(self, seconds: float) -> None:
         """Show the last line that the step has printed."""
@@ -135,23 +135,34 @@ class _Progress:
             self._status.update(Text(f"{self._words}, {minutes(seconds)}: {last_line(self._log)}"[:160]))
         elif monotonic() - self._said > SECONDS_BETWEEN_LINES:
             self._said = monotonic()
-            click.echo(f"{self._words}, {minutes(seconds)}: {last_line(self._log)}", err=True)
+            self._say(f"{self._words}, {minutes(seconds)}: {last_line(self._log)}")
 
     def ended(self, record: Record) -> None:
         """Say how a step ended."""
         words = record.problem or f"{len(record.products)} products"
-        click.echo(f"{self._words}: {record.state}, {minutes(record.seconds)}: {words}", err=True)
+        self._say(f"{self._words}: {record.state}, {minutes(record.seconds)}: {words}")
+
+    def _say(self, words: str) -> None:
+        if self._status is None:
+            click.echo(words, err=True)
+        else:
+            self._status.console.print(words, markup=False, highlight=False)
 
 
 def _copy(reproduction: Reproduction, planned: Sequence[Planned], files: Sequence[Path], target: Path) -> None:
     """Copy the products and the manifest: a reference set that is small enough to be kept."""
-    done = [entry.record for entry in planned if entry.record is not None and entry.plan in ("done", "kept")]
-    made = [reproduction.out / name for record in done for name in record.products]
+    made = [reproduction.out / name for entry in planned if entry.plan in ("done", "kept") for name in _small(entry)]
     for file in [*files, *made]:
         copy = target / file.relative_to(reproduction.out)
         copy.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(file, copy)
     click.echo(f"{len(made)} products and the manifest copied to {target}")
+
+
+def _small(entry: Planned) -> list[str]:
+    """Return the products of a step but for those that are too large for a reference set."""
+    names = entry.record.products if entry.record is not None else {}
+    return [name for name in names if name not in entry.step.not_copied]
 
 
 def _end(planned: Sequence[Planned], files: Sequence[Path]) -> None:

@@ -149,6 +149,6 @@ def _commit(found: dict[str, Any]) -> str:
 
 def minutes(seconds: float) -> str:
     """Return a span of time as people say it."""
-    if seconds < 100:
+    if seconds < 60:
         return f"{seconds:.0f} s"
     return f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.1f} h"

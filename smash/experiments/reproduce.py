@@ -276,8 +276,8 @@ def _run_command(
 
 
 def last_line(log: Path) -> str:
-    """Return the last line that the commands have printed; empty where there is none yet."""
+    """Return the last line of words that the commands have printed; empty where there is none yet."""
     with open(log, "rb") as said:
         said.seek(max(0, said.seek(0, 2) - 2000))
         lines = said.read().decode(errors="replace").splitlines()
-    return next((line.strip() for line in reversed(lines) if line.strip()), "")
+    return next((line.strip() for line in reversed(lines) if any(map(str.isalnum, line))), "")

@@ -37,7 +37,7 @@ class Step(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
     `minutes` is the estimated time on 2 quiet cores; `products` are patterns below `{out}`, each of which must be met;
     `needs` names steps that come first, `requires` packages without which the step is not run; `leaves_out` says what
-    of the whole it does not do, and why.
+    of the whole it does not do, and why; `not_copied` are products that are too large for `--copy-to`.
     """
 
     name: str
@@ -48,6 +48,7 @@ class Step(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     needs: list[str] = []
     requires: list[str] = []
     leaves_out: str = ""
+    not_copied: list[str] = []
 
     def words(self, out: Path, here: Path) -> list[list[str]]:
         """Return the commands as they are started."""
