@@ -6,26 +6,35 @@ import shutil
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from threading import Event
-from typing import Any
 
 import click
 
 from smash.cli.signals import stopped_by_signals
+from smash.experiments.cluster import connected
+from smash.experiments.cluster import slurm_script as batch_script
 from smash.experiments.display import Progress
 from smash.experiments.environment import commit
 from smash.experiments.experiment import Experiment, Run, experiment_runs, not_installed, read_experiment
 from smash.experiments.records import Records
 from smash.experiments.sweep import execute, local_task, sweep
-from smash.problem.errors import SmashError, Unsupported
+from smash.problem.files import write_text
 
 
 @click.command("sweep")
 @click.argument("experiment", type=click.Path(path_type=Path))
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Runs at a time (default: the file's `jobs`).")
-@click.option("--dask", metavar="ADDRESS", help="Run on the Dask scheduler at this address (tcp://host:8786).")
+@click.option("--dask", metavar="ADDRESS", help="Run on the Dask scheduler at tcp://host:8786, or of a scheduler file.")
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Default: runs/NAME-OF-EXPERIMENT.")
 @click.option("--dry-run", is_flag=True, help="Check the file, say how many runs it means and how long at most.")
-def command(experiment: Path, jobs: int | None, dask: str | None, out: Path | None, dry_run: bool) -> None:
+@click.option(
+    "--slurm-script",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="FILE",
+    help="Write a Slurm batch script that runs it with --jobs workers, and run nothing.",
+)
+def command(
+    experiment: Path, jobs: int | None, dask: str | None, out: Path | None, dry_run: bool, slurm_script: Path | None
+) -> None:
     """Do every run of EXPERIMENT.toml and record each as one line of OUT/runs.jsonl.
 
     It may be stopped or killed at any moment: start it again and it does what is left.
@@ -34,6 +43,7 @@ def command(experiment: Path, jobs: int | None, dask: str | None, out: Path | No
     Examples:
       smash sweep experiments/ablation.toml --jobs 2
       smash sweep experiments/ablation-full.toml --dask tcp://head:8786 --out runs/full
+      smash sweep experiments/ablation-full.toml --jobs 40 --slurm-script full.sh && sbatch full.sh
     """
     read = read_experiment(experiment)
     runs = installed_runs(read, experiment.parent)
@@ -42,6 +52,10 @@ def command(experiment: Path, jobs: int | None, dask: str | None, out: Path | No
     if dry_run:
         hours = sum(run.job.budget for run in runs) / width / 3600
         click.echo(f"{len(runs)} runs, at most {hours:.1f} h with {width} at a time, to be recorded in {out}")
+        return
+    if slurm_script is not None:
+        write_text(slurm_script, batch_script(runs, experiment, out, width))
+        click.echo(f"{slurm_script}: {len(runs)} runs with {width} workers, to be submitted with sbatch")
         return
     run_all(runs, out, width, dask, experiment)
 
@@ -93,21 +107,9 @@ def _sweep(runs: list[Run], records: Records, kept: int, jobs: int, dask: str | 
         ):
             sweep(runs, records, executor, local_task(stop, progress), progress, stop)
         return
-    client = _client(dask)
-    try:
+    with connected(dask) as client:
         width = sum(client.nthreads().values())
-        with Progress(len(runs), kept, width, pool_begins=False) as progress:
+        if not width:
+            click.echo("no worker is there yet; the runs wait for the first", err=True)
+        with Progress(len(runs), kept, width or len(runs), pool_begins=False) as progress:
             sweep(runs, records, client.get_executor(pure=False), execute, progress, stop)
-    finally:
-        client.close()
-
-
-def _client(address: str) -> Any:
-    try:
-        from distributed import Client
-    except ImportError:
-        raise Unsupported("Dask is not installed: pip install 'smash-testbed[cluster]'") from None
-    try:
-        return Client(address, timeout=15)
-    except (OSError, ValueError) as error:
-        raise SmashError(f"--dask {address}: no scheduler answers there ({error})") from None

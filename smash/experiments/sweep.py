@@ -111,6 +111,8 @@ def _collect(
             continue
         run = waiting.pop(future)
         if future.cancelled():
+            if not stop.is_set():  # the scheduler is gone, and what it had with it
+                lost.append(ConnectionError("the scheduler is gone"))
             continue
         error = future.exception()
         if isinstance(error, SmashError):

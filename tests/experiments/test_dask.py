@@ -1,53 +1,137 @@
-"""A sweep on a real local Dask cluster, two of whose workers are killed: every run is recorded exactly once."""
+"""A sweep on a real local Dask cluster: the same records as in one process, whatever dies on the way."""
 
 import json
+import os
+import random
+import signal
 import subprocess
 import sys
 import time
+from collections import Counter
 
 import pytest
 
+from analysis.comparison import compared, comparison_table, outcome_table
+from analysis.records import read_records
 from smash.experiments.records import RUNS
 
-pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("third_party")]
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("third_party"), pytest.mark.timeout(600)]
+
+TIMES = ("first plan [s]", "best plan [s]", "memory [MiB]")
+
+
+def start(*arguments):
+    return subprocess.Popen([sys.executable, "-m", *arguments], stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
 
 
 @pytest.fixture
-def cluster(tmp_path):
-    """Start a scheduler and three workers as processes, as on a cluster; workers start again when they die."""
-    address = tmp_path / "scheduler.json"
-    scheduler = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--port", "0", "--no-dashboard"]
-    started = [subprocess.Popen([*scheduler, "--scheduler-file", address], stderr=subprocess.DEVNULL)]
-    while not address.exists():
+def cluster(tmp_path, monkeypatch):
+    """Start a scheduler and three workers, each a process of its own under a nanny that starts it anew."""
+    monkeypatch.setenv("STARTS", str(tmp_path / "starts"))
+    file = str(tmp_path / "scheduler.json")
+    scheduler = start("distributed.cli.dask_scheduler", "--port", "0", "--no-dashboard", "--scheduler-file", file)
+    while not os.path.exists(file):
         time.sleep(0.1)
-    worker = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", address, "--nthreads", "1"]
-    workers = [subprocess.Popen([*worker, "--no-nanny", "--no-dashboard"], stderr=subprocess.DEVNULL) for _ in range(3)]
-    yield json.loads(address.read_text())["address"], workers
-    for process in started + workers:
-        process.kill()
+    local = ("--no-dashboard", "--local-directory", str(tmp_path / "local"))
+    worker = ("distributed.cli.dask_worker", "--scheduler-file", file, "--nworkers", "3", "--nthreads", "1", *local)
+    nannies = start(*worker)
+    yield file, scheduler
+    for process in (nannies, scheduler):
+        process.terminate()
         process.wait()
 
 
-def test_killed_workers_lose_only_their_running_jobs(cluster, tower_file, tmp_path):
-    address, workers = cluster
+@pytest.fixture
+def experiment(tower_file, tmp_path):
+    """Write an experiment of 200 short runs: 80 instances with and without topple, and 40 that end in trouble."""
     suite = tmp_path / "suite"
     suite.mkdir()
     tower = json.loads(tower_file.read_text())
-    for number in range(20):
-        (suite / f"{number}.json").write_text(json.dumps({**tower, "name": f"tower-{number}"}))
-    planners = "".join(f'[[planners]]\nname = "{name}"\n' for name in ("sound", "hangs-with-plan", "segfaults"))
+    for number in range(80):
+        name = "tower-" + "x" * (number % 3) + str(number)
+        (suite / f"{number:02}.json").write_text(json.dumps({**tower, "name": name}))
     file = suite / "experiment.toml"
-    file.write_text(f'name = "try"\nsuites = ["."]\nvariants = ["topple"]\nbudgets = [0.3]\n{planners}')
+    file.write_text(
+        'name = "try"\nsuites = ["."]\nbudgets = [0.5]\n[[planners]]\nname = "notes-starts"\nvariants = ["topple"]\n'
+        '[[planners]]\nname = "notes-starts"\nlabel = "again"\nthreads = 2\nvariants = ["topple"]\n'
+        '[[planners]]\nname = "segfaults"\ninstances = 20\nvariants = ["topple"]\n'
+        '[[planners]]\nname = "hangs-with-plan"\ninstances = 20\nvariants = ["topple"]\n'
+    )
+    return file
+
+
+def command(file, out, *more):
+    return [sys.executable, "-m", "smash", "sweep", str(file), "--out", str(out), *more]
+
+
+def records(out):
+    return [json.loads(line) for line in (out / RUNS).read_text().splitlines()]
+
+
+def tables(out):
+    """The tables of a comparison but for what is measured: every planner's coverage, proofs, costs, gaps, outcomes."""
+    runs = compared(sorted(read_records(out), key=lambda record: record["key"]))
+    runs = runs.sort_values("key")
+    table = comparison_table(runs).drop(columns=list(TIMES))
+    return table.to_csv(), outcome_table(runs).to_csv()
+
+
+def worker_processes(scheduler):
+    from distributed import Client
+
+    with Client(scheduler_file=scheduler, timeout=15) as client:
+        return sorted(client.run(os.getpid).values())
+
+
+def test_two_killed_workers_lose_only_what_they_were_running(cluster, experiment, tmp_path):
+    scheduler, _ = cluster
+    out, chance = tmp_path / "out", random.Random(6)
+    with open(tmp_path / "said", "w") as said:
+        running = subprocess.Popen(command(experiment, out, "--dask", scheduler), stderr=said)
+        for least in sorted(chance.sample(range(5, 190), 2)):
+            while not (out / RUNS).exists() or (out / RUNS).read_text().count("\n") < least:
+                time.sleep(0.05)
+                assert running.poll() is None
+            os.kill(chance.choice(worker_processes(scheduler)), signal.SIGKILL)
+        assert running.wait(timeout=400) == 0, (tmp_path / "said").read_text()
+    made = records(out)
+    assert len(made) == len({record["key"] for record in made}) == 200
+    begun = Counter((tmp_path / "starts").read_text().splitlines())
+    assert len(begun) == 80
+    assert 160 <= begun.total() <= 162
+    alone = tmp_path / "alone"
+    assert subprocess.run(command(experiment, alone, "--jobs", "2"), stderr=subprocess.DEVNULL).returncode == 0
+    assert tables(out) == tables(alone)
+
+
+def test_a_scheduler_that_dies_loses_no_record_and_is_one_line(cluster, experiment, tmp_path):
+    scheduler, process = cluster
     out = tmp_path / "out"
-    command = [sys.executable, "-m", "smash", "sweep", str(file), "--out", str(out), "--dask", address]
-    running = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-    for worker, least in zip(workers[:2], (5, 15), strict=True):
-        while not (out / RUNS).exists() or (out / RUNS).read_text().count("\n") < least:
-            time.sleep(0.05)
-        worker.kill()
-    _, said = running.communicate(timeout=200)
-    assert running.returncode == 0, said
-    records = [json.loads(line) for line in (out / RUNS).read_text().splitlines()]
-    assert len(records) == len({record["key"] for record in records}) == 60
-    ends = {(record["planner"], record["outcome"]) for record in records}
-    assert ends == {("sound", "optimal"), ("hangs-with-plan", "over-budget"), ("segfaults", "crashed")}
+    running = subprocess.Popen(command(experiment, out, "--dask", scheduler), stderr=subprocess.PIPE, text=True)
+    while not (out / RUNS).exists() or (out / RUNS).read_text().count("\n") < 5:
+        time.sleep(0.05)
+    process.kill()
+    _, said = running.communicate(timeout=120)
+    assert running.returncode == 7
+    assert said.splitlines()[-1].startswith("smash: ")
+    assert "start again to do them" in said.splitlines()[-1]
+    assert "Traceback" not in said
+    assert len(records(out)) >= 5
+
+
+def test_the_batch_script_runs_the_sweep_where_slurm_is_a_stand_in(experiment, tmp_path, monkeypatch):
+    monkeypatch.setenv("STARTS", str(tmp_path / "starts"))
+    experiment.write_text(
+        'name = "try"\nsuites = ["."]\ninstances = 4\nbudgets = [0.5]\n[[planners]]\nname = "sound"\n'
+    )
+    script, out = tmp_path / "job.sh", tmp_path / "out put"
+    asked = command(experiment, out, "--slurm-script", str(script), "--jobs", "2")
+    assert subprocess.run(asked, stdout=subprocess.DEVNULL).returncode == 0
+    stand_in = tmp_path / "bin" / "srun"
+    stand_in.parent.mkdir()
+    stand_in.write_text('#!/bin/bash\nwhile [[ $1 == -* ]]; do shift; done\n"$@" &\n"$@" &\nwait\n')
+    stand_in.chmod(0o755)
+    path = {**os.environ, "PATH": f"{stand_in.parent}:{os.environ['PATH']}"}
+    ended = subprocess.run(["bash", script], env=path, capture_output=True, text=True, timeout=100)
+    assert ended.returncode == 0, ended.stderr
+    assert len(records(out)) == 8
