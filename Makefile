@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
-.PHONY: help test test-slow lint suites ablation ablation-full bench scaling compare compare-full tables tables-full topple-map reproduce reproduce-full results
+.PHONY: help test test-slow lint suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full topple-map reproduce reproduce-full results
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -60,6 +60,11 @@ bench: $(STAMP) ## first plans, proofs, HiGHS against Gurobi, hundreds of blocks
 scaling: $(STAMP) ## time over 4 to 1,000 blocks, per planner: curves and exponents (hours; it can be resumed)
 	$(BIN)/smash scaling --out runs/scaling
 	$(BIN)/python -m analysis.scaling runs/scaling
+
+best-known: $(STAMP) ## best known costs and bounds of the open instances, and what is still open (20 minutes)
+	$(BIN)/python -m smash sweep experiments/open.toml --out runs/open
+	$(BIN)/python -m smash best-known update runs/open
+	$(BIN)/python -m smash best-known table --into docs/open-instances.md
 
 compare: $(STAMP) ## all planners, gadget and PDDL, on a stated subset of the committed sets (at most 30 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/compare.toml --out runs/compare

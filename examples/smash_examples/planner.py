@@ -70,7 +70,8 @@ def search(law: Law, weight: int, deadline: float, log: IncumbentLog) -> bool:
 def estimate(instance: Instance, state: State) -> int:
     """Return a lower bound on what is left: two actions a block to be placed, one a pile to be cleared."""
     held = () if state.hand is None else (state.hand,)
-    here = replace(instance, start=state.piles, table=(*state.table, *held))
+    piles = {location: tuple(pile) for location, pile in state.piles.items()}
+    here = replace(instance, start=piles, table=(*state.table, *held))
     left = demands_of(here)
     blocked = sum(not left.loose.isdisjoint(pile) for pile in left.leaving.values())
     in_hand = sum(-1 if block in left.placed else 1 for block in held)

@@ -34,6 +34,8 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "sweep": ("smash.cli.sweep", "run an experiment file: planners, instances, budgets, buffers, variants"),
     "reproduce": ("smash.cli.reproduce", "make every table and figure from nothing, with a manifest"),
     "records": ("smash.cli.records", "check the records of a sweep, or write them as tables"),
+    "best-known": ("smash.cli.best_known", "keep the list of best known costs of the open instances"),
+    "submit-check": ("smash.cli.submit_check", "say whether a plan improves on the best known one"),
 }
 """Subcommand -> (module that holds a click command called `command`, one line of help)."""
 

@@ -12,20 +12,16 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from smash.experiments.experiment import Run, instance_hash
-from smash.experiments.records import DAMAGED, RUN_FORMAT, RUNS
+from smash.experiments.records import DAMAGED, RUN_FORMAT, RUNS, recorded_plan
 from smash.experiments.schema import RunRecord
 from smash.problem.errors import MalformedFile, SmashError
-from smash.problem.files import PLAN_FORMAT, convert, instance_from_document, plan_from_document, read_bytes
+from smash.problem.files import convert, instance_from_document, read_bytes
 from smash.problem.plan import check_plan
 
 NEEDS_REASON = ("crashed", "memory", "over-budget", "refused", "unsupported", "not-installed")
 """Outcomes that say nothing without a reason."""
 NOT_RUNS = ("interrupted", "malformed")
 """Outcomes that a sweep never records: such a run is done again."""
-PLAN_FIELDS = (
-    *("instance", "planner", "topple", "max_topple", "status", "cost"),
-    *("lower_bound", "bound_origin", "incumbents", "actions"),
-)
 
 
 class Line(NamedTuple):
@@ -194,7 +190,7 @@ def _shortcoming(record: dict[str, Any]) -> str:
     instance = instance_from_document(record["instance_document"])
     if instance_hash(instance) != record["instance_hash"]:
         return "its instance does not fit its hash"
-    plan = plan_from_document({"format": PLAN_FORMAT, **{name: record[name] for name in PLAN_FIELDS}})
+    plan = recorded_plan(record)
     if plan.actions is None:
         return ""
     verdict = check_plan(instance, plan)

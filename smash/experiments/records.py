@@ -15,11 +15,16 @@ from smash.experiments.experiment import Run, instance_hash
 from smash.experiments.job import Report
 from smash.experiments.locking import hold
 from smash.problem.errors import MalformedFile
-from smash.problem.files import instance_document, plan_document
+from smash.problem.files import PLAN_FORMAT_2, instance_document, plan_document, plan_from_document
+from smash.problem.plan import Plan
 
 RUN_FORMAT = "smash-run/1"
 RUNS = "runs.jsonl"
 DAMAGED = "runs.damaged"
+PLAN_FIELDS = (
+    *("instance", "planner", "topple", "max_topple", "status", "cost"),
+    *("lower_bound", "bound_origin", "incumbents", "actions"),
+)
 
 
 def record_of(run: Run, report: Report, started: datetime, load_before: float) -> dict[str, Any]:
@@ -66,6 +71,16 @@ def record_of(run: Run, report: Report, started: datetime, load_before: float) -
         "commit": commit(),
         "machine": machine(),
     }
+
+
+def recorded_plan(record: dict[str, Any]) -> Plan:
+    """Return the plan that a record holds.
+
+    Raises:
+        MalformedFile: where it is malformed.
+    """
+    fields = {name: record[name] for name in PLAN_FIELDS} | {"without": record.get("without", [])}
+    return plan_from_document({"format": PLAN_FORMAT_2, **fields})
 
 
 class Records:
