@@ -23,8 +23,8 @@ METRICS = (
     Metric("success", "Success rate", "success", 2),
     Metric("actions", "Number of actions", "cost", 2),
     Metric("first", "Initial TP time [s]", "first_plan_seconds", 3),
-    Metric("offline", "Offline MP time [s]", "offline", 2),
-    Metric("online", "Online MP time [s]", "online", 2, ("multi",)),
+    Metric("offline", "Offline MP time [s]", "offline_cpu", 2),
+    Metric("online", "Online MP time [s]", "online_cpu", 2, ("multi",)),
     Metric("execution", "Execution [s]", "execution", 2),
     Metric("depth", "Goal object depth", "depth", 2, ("single",)),
 )

@@ -19,7 +19,7 @@ from smash.experiments.episodes import (
 from smash.experiments.records import Records
 from smash.problem.errors import SmashError
 
-SECONDS_AN_EPISODE = 12.0
+SECONDS_AN_EPISODE = 5.0
 """Wall time of a typical episode on one core, for the estimate [s]."""
 
 
@@ -35,23 +35,33 @@ SECONDS_AN_EPISODE = 12.0
     show_default=True,
     help="`open` is the paper's open pipeline; may be given twice.",
 )
+@click.option("--label", "labels", multiple=True, metavar="NAME", help="Only plans of this planner; repeatable.")
 @click.option("--scene", type=click.Path(path_type=Path), help="Scene file (default: the built-in scene).")
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="At a time.")
 @click.option("--dry-run", is_flag=True, help="Say how many episodes are left and how long they take at a guess.")
-def command(results: Path, seeds: int, policies: tuple[str, ...], scene: Path | None, jobs: int, dry_run: bool) -> None:
+def command(
+    results: Path,
+    seeds: int,
+    policies: tuple[str, ...],
+    labels: tuple[str, ...],
+    scene: Path | None,
+    jobs: int,
+    dry_run: bool,
+) -> None:
     """Carry out every plan in RESULTS/runs.jsonl and record each episode as one line of RESULTS/episodes.jsonl.
 
     It may be stopped or killed at any moment: start it again and it does what is left.
 
     \b
-    Example:
-      smash sweep experiments/tables.toml --out runs/tables && smash episodes runs/tables --policy replan --jobs 2
+    Examples:
+      smash sweep experiments/tables-subset.toml --out runs/tables && smash episodes runs/tables --jobs 2
+      smash episodes runs/tables --label smash --policy replan --policy open --seeds 3
     """
     if scene is not None:
         from smash.execution.scene_file import read_scene
 
         read_scene(scene)
-    runs = episode_runs(results, range(seeds), policies, None if scene is None else str(scene.resolve()))
+    runs = episode_runs(results, range(seeds), policies, None if scene is None else str(scene.resolve()), labels)
     with stopped_by_signals() as stop, Records(results, EPISODES, EPISODE_RUN_FORMAT) as records:
         left = sum(run.key not in records.finished for run in runs)
         hours = left * SECONDS_AN_EPISODE / jobs / 3600

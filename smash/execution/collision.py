@@ -40,6 +40,8 @@ WRIST_ALLOWANCE = 0.010
 # Hand and finger boxes in the hand's frame [m]: least and greatest corner of their hulls.
 HAND_CORNERS = np.array([[-0.0317, -0.1041, -0.0260], [0.0317, 0.1005, 0.0661]])
 FINGER_CORNERS = np.array([[-0.0106, -0.0002, 0.0584], [0.0106, 0.0265, 0.1123]])
+FINGER_JOINT_Z = 0.0584
+"""From the hand's frame to the fingers' frames, along z [m]."""
 HAND_TO_TOOL = 0.105
 """From the hand's frame to the tool frame, along z [m]."""
 

@@ -1,8 +1,9 @@
 """What an execution is recorded as: `smash-episode/1`.
 
-Times are in seconds: `offline` and `online` are wall time of motion planning before and during the episode, `execution`
-is simulated time, `task` is wall time of replanning the task. Wall times differ from run to run; everything else is a
-function of instance, plan, scene, seed and policy.
+Times are in seconds: `offline` and `online` are wall time of motion planning before and during the episode, the same
+with `_cpu` is what the planning thread computed (a busy machine does not lengthen it), `execution` is simulated time,
+`task` is wall time of replanning the task. Measured times differ from run to run; everything else is a function of
+instance, plan, scene, seed and policy.
 """
 
 from __future__ import annotations
@@ -20,7 +21,9 @@ class Times(msgspec.Struct, kw_only=True):
     """Seconds of one action or of a whole episode."""
 
     offline: float = 0.0
+    offline_cpu: float = 0.0
     online: float = 0.0
+    online_cpu: float = 0.0
     execution: float = 0.0
 
 
@@ -65,7 +68,9 @@ class Totals(msgspec.Struct, kw_only=True):
     """Times of the whole episode; `execution` includes settling and the judges' waits are left out."""
 
     offline: float
+    offline_cpu: float
     online: float
+    online_cpu: float
     execution: float
     task: float
 
@@ -98,12 +103,12 @@ class Episode(msgspec.Struct, kw_only=True):
     final: Arrangement
     actions: list[Performed]
 
-    def without_wall_times(self) -> dict[str, Any]:
+    def without_measured_times(self) -> dict[str, Any]:
         """The part that the seed determines: equal for equal arguments."""
         document: dict[str, Any] = msgspec.to_builtins(self)
         for times in [document["times"], *(entry["times"] for entry in document["actions"])]:
-            for wall in ("offline", "online", "task"):
-                times.pop(wall, None)
+            for measured in ("offline", "offline_cpu", "online", "online_cpu", "task"):
+                times.pop(measured, None)
         return document
 
 

@@ -98,6 +98,7 @@ class Executor:
         origin: Origin = "plan"
         tasks = self._ground(actions)
         self.offline = sum(task.seconds for task in tasks)
+        self.offline_cpu = sum(task.cpu_seconds for task in tasks)
         while True:
             failure = self._carry_out(tasks, origin) or self._judge()
             if failure is None or self.replanner is None or self.replans >= self.policy.replans:
@@ -131,8 +132,10 @@ class Executor:
         """
         row = Performed(step=len(self.performed) + 1, action=action_list(task.action), origin=origin)
         self.performed.append(row)
-        row.times = Times(offline=task.seconds if origin == "plan" else 0.0)
-        row.times.online = task.seconds if origin != "plan" else 0.0
+        if origin == "plan":
+            row.times = Times(offline=task.seconds, offline_cpu=task.cpu_seconds)
+        else:
+            row.times = Times(online=task.seconds, online_cpu=task.cpu_seconds)
         row.gap = task.segments is None and task.problem is None
         begun = row.begun = self.world.time
         try:
@@ -215,7 +218,9 @@ class Executor:
             retries=self.performer.retries,
             times=Totals(
                 offline=self.offline,
+                offline_cpu=self.offline_cpu,
                 online=sum(row.times.online for row in rows),
+                online_cpu=sum(row.times.online_cpu for row in rows),
                 execution=sum(row.times.execution for row in rows),
                 task=self.task_seconds,
             ),

@@ -9,14 +9,14 @@ is bridged: to the revealed pick, from there to the stored place, and back to th
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from time import perf_counter
+from dataclasses import dataclass, replace
 
 from smash.execution.block_pose import BlockPose, standing
 from smash.execution.errors import ExecutionFailure
 from smash.execution.poses import Vector
 from smash.execution.pushes import topple
 from smash.execution.steps import Approach, Move, Segment, Steps
+from smash.execution.stopwatch import Stopwatch
 from smash.execution.tabletop import Slot
 from smash.problem.errors import Unsupported
 from smash.problem.model import Action, Pick, Place, State
@@ -32,6 +32,7 @@ class Task:
         segments: Its motions, or None for a gap task.
         approach: Of a place: the way down to its target, whose upper end is the promised arm state.
         seconds: Wall time of its planning.
+        cpu_seconds: The planning thread's time.
         problem: Why planning it failed, if it did; it is then tried again when its turn comes.
     """
 
@@ -39,6 +40,7 @@ class Task:
     segments: list[Segment] | None
     approach: Approach | None = None
     seconds: float = 0.0
+    cpu_seconds: float = 0.0
     problem: ExecutionFailure | None = None
 
     @property
@@ -75,12 +77,12 @@ class Grounder:
         """
         piles, known, tasks = {name: list(pile) for name, pile in state.piles.items()}, dict(poses), []
         for action in actions:
-            begun = perf_counter()
-            try:
-                task = self.task(action, piles, known, joints)
-            except ExecutionFailure as failure:
-                task = Task(action, None, problem=failure)
-            tasks.append(Task(task.action, task.segments, task.approach, perf_counter() - begun, task.problem))
+            with Stopwatch() as watch:
+                try:
+                    task = self.task(action, piles, known, joints)
+                except ExecutionFailure as failure:
+                    task = Task(action, None, problem=failure)
+            tasks.append(replace(task, seconds=watch.wall, cpu_seconds=watch.cpu))
             self._foresee(action, piles, known)
             joints = joints if task.end is None else task.end
         return tasks

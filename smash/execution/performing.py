@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import hypot
-from time import perf_counter
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from smash.execution.policy import Policy
 from smash.execution.readback import read_state
 from smash.execution.robot import panda
 from smash.execution.steps import OPEN_SECONDS, OPENINGS, Grip, Move, Segment
+from smash.execution.stopwatch import Stopwatch
 from smash.execution.tabletop import Slot
 from smash.execution.world import World
 from smash.problem.model import TABLE, Pick, Place, State
@@ -88,11 +88,13 @@ class Performer:
         segments = task.segments
         if segments is None or not self._usable(task):
             row.repaired = row.repaired or segments is not None
-            begun = perf_counter()
+            watch = Stopwatch()
             try:
-                segments = self._plan_online(task, state)
+                with watch:
+                    segments = self._plan_online(task, state)
             finally:
-                row.times.online += perf_counter() - begun
+                row.times.online += watch.wall
+                row.times.online_cpu += watch.cpu
         match task.action:
             case Pick(block, _):
                 carry_out(self.world, segments)

@@ -10,6 +10,7 @@ import ctypes
 import os
 import sys
 from collections.abc import Callable, Mapping
+from functools import partial
 from types import TracebackType
 from typing import Any, Self
 
@@ -17,18 +18,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from smash.execution.block_pose import BlockPose
+from smash.execution.simulated_robot import simulated_panda
 from smash.execution.tabletop import Tabletop
 from smash.execution.timing import Trajectory
 
 STEP = 1 / 480
 """Physics time step [s]: at 1/240 tall stacks drift by millimetres."""
 ITERATIONS = 50
+BASE = -1
 ARM = tuple(range(7))
 FINGERS = (9, 10)
 TOOL_LINK = 11
 ARM_FORCE = (87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)
 FINGER_FORCE = 40.0
 FINGER_SPEED = 0.2
+ASLEEP = 1e-5
+"""A block whose squared speed [m2/s2 + rad2/s2] stays below this for two seconds is left out of the simulation until
+something awake touches it or what it stands with: piles do not creep, and most of the work is spared."""
 STILL_LINEAR = 0.003
 """Blocks slower than this [m/s] and ..."""
 STILL_ANGULAR = 0.05
@@ -53,6 +59,7 @@ class World:
         self.tabletop = tabletop
         self.time = 0.0
         self.opening = 0.04
+        self._gui = gui
         self._on_frame = on_frame
         self._frame_interval = frame_interval
         self._next_frame = 0.0
@@ -80,17 +87,16 @@ class World:
             self.client = None
 
     def _set_up(self, blocks: Mapping[str, BlockPose]) -> None:
-        import pybullet_data
-
         c, friction, side = self.client, self.tabletop.friction, self.tabletop.side
         c.setPhysicsEngineParameter(fixedTimeStep=STEP, numSolverIterations=ITERATIONS, deterministicOverlappingPairs=1)
         c.setGravity(0, 0, -9.81)
-        c.setAdditionalSearchPath(pybullet_data.getDataPath())
         shape = c.createCollisionShape(c.GEOM_BOX, halfExtents=[1.5, 1.5, 0.05])
         self.table: int = c.createMultiBody(0, shape, -1, [0, 0, -0.05])
         c.changeDynamics(self.table, -1, lateralFriction=friction.table)
         c.changeVisualShape(self.table, -1, rgbaColor=[0.93, 0.91, 0.87, 1])
-        self.robot: int = c.loadURDF("franka_panda/panda.urdf", useFixedBase=True)
+        unseen = 0 if self._gui else c.URDF_IGNORE_VISUAL_SHAPES
+        with simulated_panda() as urdf:
+            self.robot: int = c.loadURDF(str(urdf), useFixedBase=True, flags=unseen)
         for finger in FINGERS:
             c.changeDynamics(self.robot, finger, lateralFriction=friction.finger)
         for joint in ARM:
@@ -98,13 +104,25 @@ class World:
         for finger in FINGERS:
             c.resetJointState(self.robot, finger, self.opening)
         self._couple_fingers()
+        # The base is bolted to the table; its contacts would cost more than all blocks'.
+        for link in (BASE, 0):
+            c.setCollisionFilterPair(self.robot, self.table, link, -1, 0)
         box = c.createCollisionShape(c.GEOM_BOX, halfExtents=[side / 2] * 3)
         self.bodies: dict[str, int] = {}
         for name, pose in blocks.items():
             body = c.createMultiBody(self.tabletop.mass, box, -1, pose.position.tolist(), quaternion_of(pose.rotation))
-            c.changeDynamics(body, -1, lateralFriction=friction.block)
+            c.changeDynamics(
+                body,
+                -1,
+                lateralFriction=friction.block,
+                activationState=c.ACTIVATION_STATE_ENABLE_SLEEPING,
+                sleepThreshold=ASLEEP,
+            )
             self.bodies[name] = body
-        self._command(self._target, np.zeros(7))
+        self._step_simulation = c.stepSimulation
+        self._send_arm = partial(c.setJointMotorControlArray, self.robot, ARM, c.POSITION_CONTROL, forces=ARM_FORCE)
+        self._hold()
+        self._send_fingers()
 
     def _couple_fingers(self) -> None:
         """Let the fingers move as one: apart, they drift sideways together with the block that they squeeze."""
@@ -114,28 +132,24 @@ class World:
         )
         c.changeConstraint(gear, gearRatio=-1, erp=0.2, maxForce=200)
 
-    def _command(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> None:
-        c = self.client
-        c.setJointMotorControlArray(
-            self.robot,
-            ARM,
-            c.POSITION_CONTROL,
-            targetPositions=position.tolist(),
-            targetVelocities=velocity.tolist(),
-            forces=ARM_FORCE,
-        )
+    def _hold(self) -> None:
+        """Keep the arm where it was last sent to."""
+        self._send_arm(targetPositions=self._target.tolist(), targetVelocities=[0.0] * len(ARM))
+
+    def _send_fingers(self) -> None:
+        """Let the fingers' motors pull towards `opening`, until they are told otherwise."""
         for finger in FINGERS:
-            c.setJointMotorControl2(
+            self.client.setJointMotorControl2(
                 self.robot,
                 finger,
-                c.POSITION_CONTROL,
+                self.client.POSITION_CONTROL,
                 targetPosition=self.opening,
                 force=FINGER_FORCE,
                 maxVelocity=FINGER_SPEED,
             )
 
     def _step(self) -> None:
-        self.client.stepSimulation()
+        self._step_simulation()
         self.time += STEP
         if self._on_frame is not None and self.time >= self._next_frame:
             self._next_frame += self._frame_interval
@@ -143,16 +157,17 @@ class World:
 
     def follow(self, trajectory: Trajectory, opening: float | None = None) -> None:
         """Let the arm follow a trajectory; the fingers go to `opening` [m from the middle] meanwhile, if given."""
-        if opening is not None:
+        if opening is not None and opening != self.opening:
             self.opening = opening
+            self._send_fingers()
         positions = trajectory.sample(STEP)
-        begin = np.vstack([trajectory.positions[:1], positions[:-1]])
-        for position, velocity in zip(positions, (positions - begin) / STEP, strict=True):
-            self._command(position, velocity)
+        velocities = np.diff(positions, axis=0, prepend=trajectory.positions[:1]) / STEP
+        for row, position, velocity in zip(positions, positions.tolist(), velocities.tolist(), strict=True):
+            self._send_arm(targetPositions=position, targetVelocities=velocity)
             self._step()
-            self.recorded.append((self.time, position))
+            self.recorded.append((self.time, row))
         self._target = trajectory.positions[-1].copy()
-        self._command(self._target, np.zeros(7))
+        self._hold()
 
     def wait(self, seconds: float) -> None:
         """Let time pass."""
@@ -162,7 +177,7 @@ class World:
     def grip(self, opening: float, seconds: float) -> None:
         """Move each finger towards `opening` [m] from the middle, for `seconds`."""
         self.opening = opening
-        self._command(self._target, np.zeros(7))
+        self._send_fingers()
         self.wait(seconds)
 
     def settle(self, longest: float = 3.0, interval: float = 0.05) -> bool:

@@ -1,11 +1,13 @@
-"""One episode in a process of its own: the question as JSON on standard input, the episode as JSON on the output."""
+"""Episodes in a process of their own: a question a line as JSON on standard input, its episode a line on the output."""
 
 from __future__ import annotations
 
 import json
+import os
 import sys
+from typing import Any
 
-from smash.execution.episode import episode_text
+from smash.execution.episode import Episode, episode_text
 from smash.execution.executor import Executor
 from smash.execution.policy import OPEN
 from smash.execution.scene_file import default_scene, read_scene
@@ -13,14 +15,24 @@ from smash.experiments.episodes import REPLAN_BUDGET
 from smash.experiments.replanning import replanner
 from smash.problem.files import PLAN_FORMAT_2, instance_from_document, plan_from_document
 
+PLAN_FIELDS = (
+    "instance",
+    "planner",
+    "topple",
+    "max_topple",
+    "status",
+    "cost",
+    "actions",
+    "lower_bound",
+    "bound_origin",
+)
 
-def main() -> None:
-    """Answer one question."""
-    question = json.load(sys.stdin)
+
+def run_question(question: dict[str, Any]) -> Episode:
+    """Carry out the plan of a sweep's record: `record`, `seed`, `policy` (replan or open), `scene` (a path or None)."""
     record = question["record"]
     instance = instance_from_document(record["instance_document"])
-    fields = ("instance", "planner", "topple", "max_topple", "status", "cost", "actions", "lower_bound", "bound_origin")
-    filed = {field: record[field] for field in fields} | {"without": record.get("without", [])}
+    filed = {field: record[field] for field in PLAN_FIELDS} | {"without": record.get("without", [])}
     plan = plan_from_document({"format": PLAN_FORMAT_2, **filed})
     scene = default_scene() if question["scene"] is None else read_scene(question["scene"])
     seed, is_open = question["seed"], question["policy"] == "open"
@@ -32,7 +44,18 @@ def main() -> None:
         policy=OPEN if is_open else None,
         replanner=None if is_open else replanner(plan.planner, plan.options, REPLAN_BUDGET, seed),
     )
-    print(json.dumps(json.loads(episode_text(executor.run()))))
+    return executor.run()
+
+
+def main() -> None:
+    """Answer until the input ends."""
+    # What libraries print must not get between the answers.
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)
+    for line in sys.stdin:
+        episode = run_question(json.loads(line))
+        answers.write(json.dumps(json.loads(episode_text(episode))) + "\n")
+        answers.flush()
 
 
 if __name__ == "__main__":

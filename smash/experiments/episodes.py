@@ -1,14 +1,11 @@
 """Episodes of a sweep's plans: each recorded plan is carried out under several seeds, recorded one line an episode.
 
-`RESULTS/runs.jsonl` holds the plans, `RESULTS/episodes.jsonl` gets the episodes. Every episode runs in a process of its
-own, so that a crash of the physics costs that episode alone; a stopped run is continued where it ended.
+`RESULTS/runs.jsonl` holds the plans, `RESULTS/episodes.jsonl` gets the episodes. They run in processes of their own, so
+that a crash of the physics costs one episode alone; a stopped run is continued where it ended.
 """
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
@@ -19,6 +16,7 @@ from time import perf_counter
 from typing import Any
 
 from smash.experiments.environment import commit, load, machine, versions
+from smash.experiments.episode_worker import Crew, EpisodeLost
 from smash.experiments.records import RUNS, Records, read_records
 from smash.problem.files import instance_from_document
 from smash.problem.model import Instance, PositionsGoal
@@ -29,8 +27,6 @@ POLICIES = ("replan", "open")
 """`replan`: the executor repairs, retries and replans; `open`: the paper's open pipeline."""
 REPLAN_BUDGET = 10.0
 """Seconds of each replanning."""
-LONGEST_EPISODE = 900.0
-"""Seconds of wall time after which an episode is given up."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,15 +46,27 @@ class EpisodeRun:
 
 
 def episode_runs(
-    results: Path, seeds: Sequence[int], policies: Sequence[str], scene: str | None = None
+    results: Path,
+    seeds: Sequence[int],
+    policies: Sequence[str],
+    scene: str | None = None,
+    labels: Sequence[str] = (),
 ) -> list[EpisodeRun]:
     """Return the episodes of all plans that a sweep has recorded, seed by seed, so that a part is a fair sample.
+
+    Args:
+        results: The sweep's directory.
+        seeds: Of the episodes.
+        policies: Of `POLICIES`.
+        scene: A scene file, or None for the built-in scene.
+        labels: Only plans of planners so labelled; all where there are none.
 
     Raises:
         MalformedFile: where the records are damaged.
     """
     plans = [record for record in read_records(results / RUNS) if record["actions"] is not None]
     plans = [record for record in plans if record["outcome"] != "refused" and record["kind"] != "cutoff"]
+    plans = [record for record in plans if not labels or record["label"] in labels]
     return [EpisodeRun(record, seed, policy, scene) for seed in seeds for record in plans for policy in policies]
 
 
@@ -69,17 +77,19 @@ def run_all(
     stop: Event,
     ended: Callable[[EpisodeRun, dict[str, Any]], None],
 ) -> None:
-    """Run what is not recorded yet, `jobs` at a time."""
+    """Run what is not recorded yet, `jobs` at a time; where `stop` is set, leave at once what is under way."""
     left = [run for run in runs if run.key not in records.finished]
-    with ThreadPoolExecutor(jobs) as pool:
+    with Crew(jobs) as crew, ThreadPoolExecutor(jobs) as pool:
         waiting: dict[Future[dict[str, Any]], EpisodeRun] = {}
         source: Iterator[EpisodeRun] = iter(left)
         while True:
             while len(waiting) < jobs and not stop.is_set() and (run := next(source, None)) is not None:
-                waiting[pool.submit(run_apart, run)] = run
+                waiting[pool.submit(run_apart, run, crew)] = run
+            if stop.is_set():
+                crew.close()
             if not waiting:
                 return
-            for future in wait(waiting, timeout=1.0, return_when=FIRST_COMPLETED).done:
+            for future in wait(waiting, timeout=0.5, return_when=FIRST_COMPLETED).done:
                 run = waiting.pop(future)
                 record = future.result()
                 if not stop.is_set():
@@ -87,25 +97,15 @@ def run_all(
                     ended(run, record)
 
 
-def run_apart(run: EpisodeRun) -> dict[str, Any]:
-    """Run one episode in a process of its own; the record's `episode` is None where that process ended badly."""
+def run_apart(run: EpisodeRun, crew: Crew) -> dict[str, Any]:
+    """Run one episode in a process of the crew; the record's `episode` is None where that process ended badly."""
     started, begun, before = datetime.now(UTC), perf_counter(), load()
-    question = json.dumps({"record": run.record, "seed": run.seed, "policy": run.policy, "scene": run.scene})
+    question = {"record": run.record, "seed": run.seed, "policy": run.policy, "scene": run.scene}
     episode, problem = None, ""
     try:
-        ended = subprocess.run(
-            [sys.executable, "-m", "smash.experiments.episode"],
-            input=question,
-            capture_output=True,
-            text=True,
-            timeout=LONGEST_EPISODE,
-            start_new_session=True,
-        )
-        lines = ended.stdout.splitlines()
-        episode = json.loads(lines[-1]) if ended.returncode == 0 and lines else None
-        problem = "" if episode is not None else (ended.stderr.strip().splitlines() or [f"exit {ended.returncode}"])[-1]
-    except subprocess.TimeoutExpired:
-        problem = f"no end after {LONGEST_EPISODE:.0f} s"
+        episode = crew.ask(question)
+    except EpisodeLost as loss:
+        problem = str(loss)
     return _record(run, episode, problem, started, perf_counter() - begun, before)
 
 

@@ -9,7 +9,7 @@ from analysis.records import NoRecords
 
 def record(instance, variant, seconds, success=True, seed=0):
     failure = None if success else {"name": "slip", "reason": "it slipped", "step": 2, "action": ["pick", "a", "s"]}
-    times = {"offline": 0.1, "online": 0.2, "execution": seconds, "task": 0.0}
+    times = {"offline": 0.1, "offline_cpu": 0.1, "online": 0.2, "online_cpu": 0.2, "execution": seconds, "task": 0.0}
     episode = {
         "success": success,
         "failure": failure,

@@ -22,7 +22,7 @@ def test_a_toppled_pile_gives_the_target_free_and_the_same_seed_the_same_episode
     assert episodes[0].success
     assert episodes[0].final.piles == {"g": ["a"]}
     assert episodes[0].final.table == ["b", "c", "d"]
-    assert episodes[0].without_wall_times() == episodes[1].without_wall_times()
+    assert episodes[0].without_measured_times() == episodes[1].without_measured_times()
 
 
 def test_blocks_are_picked_from_where_they_fell_in_gap_tasks():

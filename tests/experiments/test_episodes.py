@@ -2,8 +2,11 @@ import json
 import subprocess
 import sys
 
+import msgspec
 import pytest
 
+from smash.execution.episode import Episode
+from smash.experiments.episode_worker import EpisodeLost, EpisodeWorker
 from smash.experiments.episodes import episode_runs, target_depth
 from smash.problem import PositionsGoal, make_instance
 from tests.execution.episodes import swapped_pair
@@ -39,6 +42,30 @@ def test_every_plan_is_carried_out_once_and_kept(results):
     again = smash("episodes", results, "--policy", "open", "--policy", "replan")
     assert "0 left" in again.stderr
     assert (results / "episodes.jsonl").read_text() == first
+
+
+def test_a_process_that_dies_costs_one_episode_and_the_next_is_the_same_as_alone(results):
+    run = episode_runs(results, [1], ["open"])[0]
+    question = {"record": run.record, "seed": run.seed, "policy": run.policy, "scene": run.scene}
+    worker = EpisodeWorker()
+    try:
+        first = worker.ask(question)
+        again = worker.ask(question)
+        with pytest.raises(EpisodeLost, match="KeyError"):
+            worker.ask({})
+        afresh = worker.ask(question)
+    finally:
+        worker.close()
+    assert unmeasured(first) == unmeasured(again) == unmeasured(afresh)
+
+
+def unmeasured(episode):
+    return msgspec.convert(episode, Episode).without_measured_times()
+
+
+def test_only_plans_of_the_named_planner_are_carried_out(results):
+    assert len(episode_runs(results, [0], ["open"], labels=["greedy"])) == 1
+    assert episode_runs(results, [0], ["open"], labels=["smash"]) == []
 
 
 def test_a_dry_run_runs_nothing(results):
