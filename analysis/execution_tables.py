@@ -20,7 +20,7 @@ RESAMPLES = 5000
 TIMES = ("offline", "offline_cpu", "online", "online_cpu", "execution", "task")
 LEGEND = (
     "Cells: mean ± std (median) over instances; success with its 95 % Wilson interval; the paper: mean ± std. "
-    "Times of motion planning (MP) are those of the planning thread's clock, so that other work on the machine does not "
+    "Times of motion planning (MP) are by the planning thread's clock, so that other work on the machine does not "
     "count; those of task planning (TP) are by the wall's clock."
 )
 BENCHMARKS = {"single": "Table I: single-goal rearrangement", "multi": "Table II: multi-goal rearrangement"}
