@@ -4,7 +4,7 @@ import itertools
 
 from hypothesis import strategies as st
 
-from smash.problem import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal, make_instance
+from smash.problem import TABLE, Carrier, Costs, Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal, make_instance
 
 ODD_NAMES = ["b 1", "", "größe", "quote'\"", "s1", "-", "(x)", "42", "B1", "b1"]
 
@@ -65,6 +65,48 @@ def instances(
         start=start,
         table=table,
         goal=draw(goals(blocks, stacks, kinds)),
+    )
+
+
+@st.composite
+def family_instances(draw, max_blocks=3, max_stacks=3, max_buffers=1, kinds=("stacks", "positions", "on")) -> Instance:
+    """Draw a small instance with, perhaps, a carrier, lifts and costs."""
+    plain = draw(instances(max_blocks=max_blocks, max_stacks=max_stacks, max_buffers=max_buffers, kinds=kinds))
+    carriers, held = [], ()
+    if draw(st.booleans()):
+        held = plain.table[: draw(st.integers(0, 1))]
+        stations = ("left", "right", "far")[: draw(st.integers(1, 3))]
+        carriers = [Carrier("tray", stations, draw(st.sampled_from(stations)), draw(st.integers(1, 2)), held)]
+    places = [*plain.locations, TABLE, *(station for carrier in carriers for station in carrier.stations)]
+    positions = {place: (draw(st.integers(0, 9)) / 10, draw(st.integers(0, 9)) / 10) for place in places}
+    prices = {name: draw(st.integers(1, 6)) for name in ("pick", "place", "topple", "carry", "lift")}
+    costs = draw(
+        st.sampled_from([Costs(), Costs(prices), Costs(prices, draw(st.sampled_from([5.0, 20.0])), positions)])
+    )
+    return make_instance(
+        name="family",
+        blocks=plain.blocks,
+        stacks=plain.stacks,
+        buffers=plain.buffers,
+        start=plain.start,
+        table=[block for block in plain.table if block not in held],
+        goal=plain.goal,
+        carriers=carriers,
+        capacities={"lift": draw(st.integers(1, 3))} if draw(st.booleans()) else {},
+        costs=costs,
+    )
+
+
+def family_options() -> st.SearchStrategy[PlanOptions]:
+    """Draw plan options that leave out some of the family."""
+    return st.sampled_from(
+        [
+            PlanOptions(),
+            PlanOptions(topple=False),
+            PlanOptions(True, 1),
+            PlanOptions(without=("carry",)),
+            PlanOptions(topple=False, without=("lift",)),
+        ]
     )
 
 

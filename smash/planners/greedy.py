@@ -8,12 +8,15 @@ from time import perf_counter
 from typing import ClassVar
 
 from smash.planners.construct import NEVER, Construction
+from smash.planners.family.twin import from_twin, plain_twin
 from smash.planners.indexed import Indexed, Step, cost_of
 from smash.planners.line import line_steps
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
 from smash.planners.shorten import shorten
 from smash.planners.targets import Piles, target_piles
-from smash.problem.model import Instance, PlanOptions, State
+from smash.problem.family import FAMILY, is_plain
+from smash.problem.feasibility import why_infeasible
+from smash.problem.model import Action, Instance, PlanOptions, State
 from smash.problem.rules import Law
 
 PASSES = 12
@@ -26,6 +29,8 @@ class GreedyPlanner(BasePlanner):
     """Direct moves first; else topple, or put aside where it costs the least later; then passes that improve."""
 
     summary: ClassVar[str] = "a plan at any size in near-linear time; infeasibility decided at once"
+    aggregating: ClassVar[frozenset[str]] = frozenset(FAMILY)
+    weighs: ClassVar[bool] = True
 
     def solve(
         self,
@@ -36,6 +41,8 @@ class GreedyPlanner(BasePlanner):
     ) -> PlanResult:
         """Plan at once; improve for some passes, within `budget` seconds."""
         log = IncumbentLog(instance, options, on_incumbent, gentle=True)
+        if not is_plain(instance, options):
+            return self._family(instance, options, log, perf_counter() + budget)
         impossible = log.without_plan()
         if impossible is not None:
             return impossible
@@ -45,6 +52,25 @@ class GreedyPlanner(BasePlanner):
         if log.cost == 0:
             log.prove(0, "start")
         return log.result()
+
+    def _family(self, instance: Instance, options: SolveOptions, log: IncumbentLog, deadline: float) -> PlanResult:
+        """Plan with pick, place and topple alone: whatever else there is, such a plan remains one."""
+        for actions in twin_plans(instance, options, deadline):
+            log.offer(actions, "greedy")
+        if log.cost == 0:
+            log.prove(0, "start")
+        return log.result()
+
+
+def twin_plans(
+    instance: Instance, options: PlanOptions, deadline: float, seed: int = 0
+) -> Iterator[tuple[Action, ...]]:
+    """Yield plans of any instance by way of its plain twin; none where pick, place and topple do not suffice."""
+    twin = plain_twin(instance)
+    if why_infeasible(twin, options) is None:
+        problem = Indexed.of(twin)
+        for steps in greedy_steps(problem, options, deadline, seed):
+            yield tuple(from_twin(instance, problem.actions(steps)))
 
 
 def greedy_steps(problem: Indexed, options: PlanOptions, deadline: float, seed: int = 0) -> Iterator[list[Step]]:

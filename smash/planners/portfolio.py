@@ -10,6 +10,7 @@ from smash.planners.astar import StateSearch
 from smash.planners.greedy import greedy_steps
 from smash.planners.indexed import Indexed
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, Relay, SolveOptions
+from smash.problem.family import FAMILY, is_plain
 from smash.problem.model import Instance
 
 SPARE_SECONDS = 0.05
@@ -33,6 +34,8 @@ class SmashPlanner(BasePlanner):
 
     summary: ClassVar[str] = "the default: greedy, precedence graph, search over states and layered model combined"
     proves: ClassVar[bool] = True
+    aggregating: ClassVar[frozenset[str]] = frozenset(FAMILY)
+    weighs: ClassVar[bool] = True
     budget_dependent: ClassVar[bool] = True  # its parts get shares of the budget
 
     def solve(
@@ -44,10 +47,28 @@ class SmashPlanner(BasePlanner):
     ) -> PlanResult:
         """Plan for at most `budget` seconds of wall time; ends as soon as the best plan is proven optimal."""
         log = IncumbentLog(instance, options, on_incumbent, gentle=True)
+        if not is_plain(instance, options):
+            return self._family(instance, options, budget, log)
         impossible = log.without_plan()
         if impossible is not None:
             return impossible
         return _Combined(instance, options, budget, log).run()
+
+    @staticmethod
+    def _family(instance: Instance, options: SolveOptions, budget: float, log: IncumbentLog) -> PlanResult:
+        """Plan with what is still exact: the precedence graph and its kin count actions of pick, place and topple.
+
+        The search over the law's states comes first, the layered model gets what it leaves.
+        """
+        from smash.planners.family.solve import offer_twin, search_family
+
+        began = perf_counter()
+        deadline = began + budget - min(SPARE_SECONDS, budget / 10)
+        details: dict[str, Any] = {"exact_methods": ["search over states"]}
+        offer_twin(instance, options, log, began + GREEDY_SHARE * budget)
+        if search_family(instance, options, log, deadline, details):
+            return log.result(infeasible=True, bound_origin="astar", details=details)
+        return log.result(details=details)
 
 
 class _Combined:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from time import perf_counter
 from typing import Any, ClassVar, Literal, Protocol, runtime_checkable
 
-from smash.problem.family import kinds_of
+from smash.problem.family import is_plain, kinds_of
 from smash.problem.feasibility import why_infeasible
 from smash.problem.model import Action, Instance, PlanOptions
 from smash.problem.plan import Incumbent, Plan, Status
@@ -175,7 +175,7 @@ class IncumbentLog:
         self._law = Law(instance, options)
         self._report = on_incumbent
         self._report_bound = getattr(on_incumbent, "bound", None)
-        self._gentle = gentle
+        self._gentle = gentle and is_plain(instance, options)
         self.entries: list[Incumbent] = []
         self.best: tuple[Action, ...] | None = None
         self.cost: int | None = None
@@ -213,7 +213,7 @@ class IncumbentLog:
             return False
         if self.cost is not None and verdict.cost >= self.cost:
             return False
-        self.best = self._softened(actions) if plain else tuple(actions)
+        self.best = self._softened(actions)
         self.cost = len(self.best) if plain else verdict.cost
         at = self.elapsed if seconds is None else seconds
         self.entries.append(Incumbent(at, self.cost, origin))

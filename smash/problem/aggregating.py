@@ -9,11 +9,20 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import Any, ClassVar, Generic, NamedTuple, TypeVar
 
 from smash.problem.model import Aggregating, Instance, PlanOptions, State
 
 A = TypeVar("A", bound=Aggregating)
+
+
+class Hop(NamedTuple):
+    """One action brings up to `shared` blocks from the place `origin` to the place `target`, at `cost` in all."""
+
+    origin: str
+    target: str
+    cost: int
+    shared: int
 
 
 class AggregatingKind(ABC, Generic[A]):
@@ -56,6 +65,10 @@ class AggregatingKind(ABC, Generic[A]):
     def way(self, state: State, action: A) -> tuple[str, str] | None:
         """Return the two places between which blocks travel through the air, for the cost; None: they do not."""
         return None
+
+    @abstractmethod
+    def hops(self, instance: Instance, options: PlanOptions) -> Iterator[Hop]:
+        """Yield the ways on which such an action takes a block from place to place, for lower bounds."""
 
     @abstractmethod
     def read(self, entry: list[Any]) -> A | None:

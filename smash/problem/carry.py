@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from smash.problem.aggregating import AggregatingKind
+from smash.problem.aggregating import AggregatingKind, Hop
 from smash.problem.model import Aggregating, Instance, PlanOptions, State
 
 
@@ -60,6 +61,13 @@ class CarryKind(AggregatingKind[Carry]):
     def way(self, state: State, action: Carry) -> tuple[str, str]:
         """Return the two stations."""
         return state.stations[action.carrier], action.station
+
+    def hops(self, instance: Instance, options: PlanOptions) -> Iterator[Hop]:
+        """Yield the ways between the stations of each carrier."""
+        for carrier in instance.carriers:
+            for origin, target in itertools.permutations(carrier.stations, 2):
+                cost = instance.costs.of(self.name) + instance.costs.distance(origin, target)
+                yield Hop(origin, target, cost, carrier.capacity)
 
     def read(self, entry: list[Any]) -> Carry | None:
         """Return the carry of `["carry", carrier, station]`."""

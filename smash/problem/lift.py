@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from smash.problem.aggregating import AggregatingKind
+from smash.problem.aggregating import AggregatingKind, Hop
 from smash.problem.model import Aggregating, Instance, PlanOptions, State
 
 
@@ -67,6 +68,12 @@ class LiftKind(AggregatingKind[Lift]):
     def way(self, state: State, action: Lift) -> tuple[str, str]:
         """Return the two locations."""
         return action.source, action.target
+
+    def hops(self, instance: Instance, options: PlanOptions) -> Iterator[Hop]:
+        """Yield the ways between any two locations."""
+        for origin, target in itertools.permutations(instance.locations, 2):
+            cost = instance.costs.of(self.name) + instance.costs.distance(origin, target)
+            yield Hop(origin, target, cost, instance.capacities[self.name])
 
     def read(self, entry: list[Any]) -> Lift | None:
         """Return the lift of `["lift", source, height, target]`."""

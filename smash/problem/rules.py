@@ -110,13 +110,17 @@ class Law:
         """Yield every legal action in `state`."""
         if state.hand is not None:
             yield from (Place(state.hand, location) for location in self.instance.locations)
-            yield from (Place(state.hand, name) for name in state.carried if self._carrier_refusal(state, name) is None)
+            yield from (Place(state.hand, carrier) for carrier in self.open_carriers(state))
             return
         yield from (Pick(pile[-1], location) for location, pile in state.piles.items() if pile)
         yield from (Pick(block, TABLE) for block in sorted(state.table))
         yield from (Pick(block, name) for name, blocks in state.carried.items() for block in sorted(blocks))
         for kind in self._kinds:
             yield from kind.legal(self.instance, self.options, state)
+
+    def open_carriers(self, state: State) -> Iterator[str]:
+        """Yield the carriers on which a block can be placed in `state`."""
+        yield from (carrier for carrier in state.carried if self._carrier_refusal(state, carrier) is None)
 
     def goal_shortfall(self, state: State) -> str | None:
         """Return what `state` lacks for the goal, in words, or None where the goal holds."""

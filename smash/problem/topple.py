@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from smash.problem.aggregating import AggregatingKind
-from smash.problem.model import Aggregating, Instance, PlanOptions, State
+from smash.problem.aggregating import AggregatingKind, Hop
+from smash.problem.model import TABLE, Aggregating, Instance, PlanOptions, State
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +62,12 @@ class ToppleKind(AggregatingKind[Topple]):
     def gathered(self, state: State, action: Topple) -> tuple[str, ...]:
         """Return the blocks that fall, topmost first."""
         return tuple(reversed(state.piles[action.location][action.height - 1 :]))
+
+    def hops(self, instance: Instance, options: PlanOptions) -> Iterator[Hop]:
+        """Yield the way from each stack to the table region."""
+        blocks = len(instance.blocks)
+        most = max(1, blocks if options.max_topple is None else min(blocks, options.max_topple))
+        yield from (Hop(stack, TABLE, instance.costs.of(self.name), most) for stack in instance.stacks)
 
     def read(self, entry: list[Any]) -> Topple | None:
         """Return the topple of `["topple", location, height]`."""
