@@ -1,7 +1,10 @@
-"""The aggregating actions that there are. A new one is a file of its own and a line here."""
+"""The aggregating actions that there are: three built in, more by the entry-point group `smash.aggregating`."""
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterator
+from importlib.metadata import entry_points
 from typing import Any
 
 from smash.problem.aggregating import AggregatingKind, allowed
@@ -10,8 +13,22 @@ from smash.problem.lift import LiftKind
 from smash.problem.model import Aggregating, Instance, PlanOptions
 from smash.problem.topple import ToppleKind
 
-FAMILY: dict[str, AggregatingKind[Any]] = {kind.name: kind for kind in (ToppleKind(), CarryKind(), LiftKind())}
-"""Kinds of aggregating actions by name."""
+GROUP = "smash.aggregating"
+
+
+def _from_outside() -> Iterator[AggregatingKind[Any]]:
+    """Yield the kinds that other packages add; one that cannot be loaded is named and left out."""
+    for entry in entry_points(group=GROUP):
+        try:
+            yield entry.load()()
+        except Exception as error:  # another package's fault must not stop this one
+            print(f"smash: aggregating action {entry.name!r} cannot be loaded: {error}", file=sys.stderr)
+
+
+FAMILY: dict[str, AggregatingKind[Any]] = {
+    kind.name: kind for kind in (*_from_outside(), ToppleKind(), CarryKind(), LiftKind())
+}
+"""Kinds of aggregating actions by name; the built-in ones cannot be replaced."""
 
 _BY_CLASS: dict[type[Aggregating], AggregatingKind[Any]] = {kind.action: kind for kind in FAMILY.values()}
 

@@ -126,3 +126,30 @@ def test_the_package_installs(tmp_path):
     assert run(command, dict(os.environ), tmp_path).returncode == 0
     environment = {**os.environ, "PYTHONPATH": f"{tmp_path}:{ROOT}"}
     assert json.loads(plan("best-first", environment, tmp_path).stdout)["cost"] == 3
+
+
+def test_the_aggregating_action_is_planned_with_where_it_pays(installed, tmp_path):
+    places = {"s1": [0, 0], "s2": [0, 0], "g1": [9, 0], "g2": [9, 0], "table": [0, 2], "left": [0, 1], "right": [9, 1]}
+    instance = {
+        "format": "smash-instance/2",
+        "name": "far",
+        "blocks": ["a", "b", "x"],
+        "stacks": ["s1", "s2", "g1", "g2"],
+        "start": {"s1": ["a"], "s2": ["b"]},
+        "goal": {"kind": "positions", "positions": {"a": ["g1", 1], "b": ["g2", 1]}},
+        "carriers": [{"name": "tray", "stations": ["left", "right"], "at": "left", "capacity": 2, "holds": ["x"]}],
+        "costs": {"actions": {"pour": 2, "carry": 5, "pick": 20, "place": 20}, "travel": 100, "positions": places},
+    }
+    (tmp_path / "far.json").write_text(json.dumps(instance))
+    planned = run(["-m", "smash", "plan", "far.json", "--out", "plan.json"], installed, tmp_path)
+    assert planned.returncode == 0, planned.stderr
+    document = json.loads((tmp_path / "plan.json").read_text())
+    assert document["status"] == "optimal"
+    assert document["actions"][0] == ["pour", "tray"]
+    assert run(["-m", "smash", "validate", "far.json", "plan.json"], installed, tmp_path).returncode == 0
+    without = run(["-m", "smash", "plan", "far.json", "--without", "pour"], installed, tmp_path)
+    assert json.loads(without.stdout)["cost"] > document["cost"]
+    unknown = run(
+        ["-m", "smash", "validate", "far.json", "plan.json"], {**installed, "PYTHONPATH": str(ROOT)}, tmp_path
+    )
+    assert (unknown.returncode, unknown.stderr.count("\n")) == (2, 1)
