@@ -44,10 +44,12 @@ tables: $(STAMP) ## the paper's Tables I and II in simulation, a stated subset (
 	$(BIN)/python -m smash episodes runs/tables-subset --policy replan --policy open --jobs 2
 	$(BIN)/python -m analysis.execution_tables runs/tables-subset
 
-tables-full: $(STAMP) ## both tables whole: 20 instances a setting, 3 physics seeds (hours, said first; it can be resumed)
+tables-full: $(STAMP) ## both tables whole: 20 instances a setting, up to 3 physics seeds (hours, said first; it can be resumed)
 	$(BIN)/python -m smash sweep experiments/tables-full.toml --out runs/tables-full --dry-run
 	$(BIN)/python -m smash sweep experiments/tables-full.toml --out runs/tables-full
-	$(BIN)/python -m smash episodes runs/tables-full --policy replan --policy open --seeds 3 --jobs 2
+	$(BIN)/python -m smash episodes runs/tables-full --label smash --policy replan --policy open --jobs 2
+	$(BIN)/python -m smash episodes runs/tables-full --label fd-lama --policy replan --jobs 2
+	$(BIN)/python -m smash episodes runs/tables-full --label smash --policy replan --seeds 3 --jobs 2
 	$(BIN)/python -m analysis.execution_tables runs/tables-full
 
 topple-map: $(STAMP) ## where toppled blocks land, per cut height and number (minutes)

@@ -30,6 +30,8 @@ MOVED = 0.004
 """A block this far from where a motion was planned for [m] needs a new one."""
 SCENE_ALLOWANCE = 0.006
 """Motions planned offline may come this much closer to revealed blocks than planned [m]."""
+MOST_PUSHES = 5
+"""A topple that has left blocks standing above the cut after so many pushes has failed."""
 PAUSE = 0.05
 """Standing still between two motions, for the arm to catch up [s]."""
 
@@ -88,13 +90,7 @@ class Performer:
         segments = task.segments
         if segments is None or not self._usable(task):
             row.repaired = row.repaired or segments is not None
-            watch = Stopwatch()
-            try:
-                with watch:
-                    segments = self._plan_online(task, state)
-            finally:
-                row.times.online += watch.wall
-                row.times.online_cpu += watch.cpu
+            segments = self._planned(task, state, row)
         match task.action:
             case Pick(block, _):
                 carry_out(self.world, segments)
@@ -107,8 +103,27 @@ class Performer:
                 if self.observe().piles[target][-1:] != [block]:
                     raise Slip(f"block {block!r} does not stand on {target!r} after it was let go")
             case Topple():
-                carry_out(self.world, segments)
-                self.world.settle()
+                self._topple(task.action, segments, row)
+
+    def _topple(self, action: Topple, segments: Sequence[Segment], row: Performed) -> None:
+        """Push, look, and push again as long as blocks stand above the cut: many blocks fall in several pushes."""
+        for last in (*[False] * (MOST_PUSHES - 1), True):
+            carry_out(self.world, segments)
+            self.world.settle()
+            state = self.observe()
+            if last or len(state.piles[action.location]) < action.height:
+                return
+            segments = self._planned(Task(action, None), state, row)
+
+    def _planned(self, task: Task, state: State, row: Performed) -> list[Segment]:
+        """Plan an action online and add the time that it takes to the record."""
+        watch = Stopwatch()
+        try:
+            with watch:
+                return self._plan_online(task, state)
+        finally:
+            row.times.online += watch.wall
+            row.times.online_cpu += watch.cpu
 
     def _plan_online(self, task: Task, state: State) -> list[Segment]:
         """Plan an action from the observed scene and the arm's present state."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from math import cos, sin
+from math import ceil, cos, sin
 
 import numpy as np
 
@@ -58,6 +58,19 @@ SHORT_CUT = Manner(0.5, 2.0)
 """Up to 3 blocks fall from the rest of the pile."""
 TALL_CUT = Manner(0.8, 1.1)
 """More fall: a quick, short push leaves the rest of the pile where it is, a long one drags it along."""
+
+
+MOST_SWEPT = 7
+"""More blocks than this are not swept off the table at once, ..."""
+MOST_CUT = 5
+"""... and no more than this off a standing rest: the upper ones would fall out of reach. They go in several pushes."""
+
+
+def first_cut(height: int, top: int) -> int:
+    """The lowest level that the next push takes along, of a pile of `top` blocks that shall be cut at `height`."""
+    falling = top - height + 1
+    pushes = ceil(falling / (MOST_SWEPT if height == 1 else MOST_CUT))
+    return top - ceil(falling / pushes) + 1
 
 
 def manner(height: int, falling: int) -> Manner:
@@ -109,7 +122,9 @@ def topple(
     height: int,
     poses: Mapping[str, BlockPose],
 ) -> list[Segment]:
-    """From `start` [rad] to before the pile, through it from `height` upward, and back.
+    """From `start` [rad] to before the pile, through its upper part, and back.
+
+    The push takes what lies above `height`, or the upper part of it where that is too much for one push (`first_cut`).
 
     Args:
         steps: Plans motions.
@@ -122,13 +137,14 @@ def topple(
     Raises:
         NoIk, NoMotion: where no direction allows it; the message is about the preferred one.
     """
-    falling = pile[height - 1 :]
+    cut = first_cut(height, len(pile))
+    falling = pile[cut - 1 :]
     others = [pose for name, pose in poses.items() if name not in pile]
     scene = steps.scene(poses)
     problem: ExecutionFailure | None = None
     for direction in directions(slot, len(falling), others, steps.side):
         try:
-            return _push(steps, start, slot, direction, falling, height, scene)
+            return _push(steps, start, slot, direction, falling, cut, scene)
         except ExecutionFailure as failure:
             problem = problem or failure
     raise problem or NoIk("the stack has no topple direction")

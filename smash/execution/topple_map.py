@@ -14,9 +14,12 @@ import msgspec
 import numpy as np
 
 from smash.execution.block_pose import BlockPose
+from smash.execution.episode import Performed
 from smash.execution.errors import ExecutionFailure
-from smash.execution.performing import carry_out
-from smash.execution.pushes import strip, topple
+from smash.execution.grounding import Grounder, Task
+from smash.execution.performing import Performer
+from smash.execution.policy import OPEN
+from smash.execution.pushes import strip
 from smash.execution.readback import read_state
 from smash.execution.robot import READY
 from smash.execution.start import starting_poses
@@ -26,6 +29,7 @@ from smash.execution.timing import Pace
 from smash.execution.world import World
 from smash.problem.files import make_instance
 from smash.problem.model import PositionsGoal
+from smash.problem.topple import Topple
 
 TRIAL_FORMAT = "smash-topple-trial/1"
 TRUSTED = 0.9
@@ -87,16 +91,16 @@ def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: i
     slots = {location: slot}
     poses = starting_poses(instance, slots, tabletop, np.random.default_rng(seed))
     steps = Steps(tabletop.side, Pace(tabletop.velocity, tabletop.acceleration), seed)
+    action = Topple(location, height)
     blank = Trial(scene=tabletop.name, stack=stack, height=height, falling=falling, seed=seed)
     with World(tabletop, poses, READY) as world:
         world.settle()
         before = world.poses()
+        performer = Performer(world, Grounder(steps, slots), slots, OPEN)
         try:
-            segments = topple(steps, READY, slot, tuple(names), height, before)
+            performer.perform(Task(action, None), Performed(step=1, action=[], origin="plan"), performer.observe())
         except ExecutionFailure as failure:
             return msgspec.structs.replace(blank, problem=str(failure))
-        carry_out(world, segments)
-        world.settle()
         after, arm = world.poses(), world.commanded()
     lower = names[: height - 1]
     return msgspec.structs.replace(
