@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -128,13 +129,18 @@ def failure_table(runs: pd.DataFrame) -> pd.DataFrame:
     return counts.rename("runs").reset_index().rename(columns={"label": "planner"})
 
 
-def make(results: Path, out: Path) -> list[Path]:
+def make(results: Path, out: Path, keys: Collection[str] | None = None) -> list[Path]:
     """Make the comparison's tables and curves from the records in `results`; return the files.
+
+    Args:
+        results: the directory of the records.
+        out: where the files go.
+        keys: the runs that are meant (None: all); a directory may hold records of other comparisons too.
 
     Raises:
         NoRecords: where there are none.
     """
-    records = comparable(read_records(results))
+    records = comparable(read_records(results, keys))
     out.mkdir(parents=True, exist_ok=True)
     runs = compared(records)
     _, wrong = optima(records)

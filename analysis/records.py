@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -17,13 +18,15 @@ class NoRecords(Exception):
     """A directory without usable records; the message is one line."""
 
 
-def read_records(results: Path) -> list[dict[str, Any]]:
-    """Return the records of a results directory; a last line that a kill left half-written is left out.
+def read_records(results: Path, keys: Collection[str] | None = None) -> list[dict[str, Any]]:
+    """Return the records of a results directory, or those of some runs; a half-written last line is left out.
 
     Raises:
         NoRecords: where there are none, or a line before the last is damaged.
     """
     records = read_lines(results / "runs.jsonl", RUN_FORMAT)
+    if keys is not None:
+        records = [record for record in records if record["key"] in keys]
     if not records:
         raise NoRecords(f"{results / 'runs.jsonl'}: no finished run")
     return records

@@ -46,7 +46,8 @@ def command(
 ) -> None:
     """Run every planner on every instance of each SUITE (a committed set or a directory) and compare.
 
-    The records go to OUT/runs.jsonl, tables and curves to OUT/comparison; stopped, it goes on where it was.
+    The records go to OUT/runs.jsonl, tables and curves to OUT/comparison; stopped, it goes on where it was. Records of
+    other comparisons that stand there are kept and left out of the tables.
 
     \b
     Example:
@@ -71,15 +72,17 @@ def command(
     )
     check_experiment(experiment, "smash compare")
     out = out or Path("runs") / name
-    run_all(installed_runs(experiment, Path()), out, jobs, dask)
-    files = comparison.make(out, out / "comparison")
-    _show(comparison, out)
+    runs = installed_runs(experiment, Path())
+    run_all(runs, out, jobs, dask)
+    keys = {run.key for run in runs}
+    files = comparison.make(out, out / "comparison", keys)
+    _show(comparison, out, keys)
     click.echo("\n".join(map(str, files)))
 
 
-def _show(comparison: Any, out: Path) -> None:
+def _show(comparison: Any, out: Path, keys: set[str]) -> None:
     """Print the table, its settings as headings, and how the runs ended."""
-    runs = comparison.compared(comparison.comparable(comparison.read_records(out)))
+    runs = comparison.compared(comparison.comparable(comparison.read_records(out, keys)))
     table = comparison.comparison_table(runs)
     for setting, part in table.groupby(comparison.GROUP, sort=True):
         suite, blocks, count, variant = setting

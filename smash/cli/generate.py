@@ -20,6 +20,8 @@ from smash.problem.generators import BENCHMARKS, generate
 def command(benchmark: str, blocks: int, buffers: int, count: int, seed: int, out: Path) -> None:
     """Make random instances of a benchmark of the paper; the same seed gives the same files.
 
+    Files of the same names are replaced; other instance files in the directory stay, which is said.
+
     \b
     single  one target block must reach height 1 of an empty fourth location
     multi   all blocks have a place in the goal, on the same three locations
@@ -28,7 +30,13 @@ def command(benchmark: str, blocks: int, buffers: int, count: int, seed: int, ou
     Example:
       smash generate multi --blocks 9 --buffers 12 --count 20 --seed 1 --out my-set
     """
+    instances = list(generate(benchmark, blocks, buffers, count, seed))
     out.mkdir(parents=True, exist_ok=True)
-    for instance in generate(benchmark, blocks, buffers, count, seed):
+    written = {f"{instance.name}.json" for instance in instances}
+    others = sorted(file.name for file in out.glob("*.json") if file.name not in written)
+    for instance in instances:
         write_instance(instance, out / f"{instance.name}.json")
     click.echo(f"{count} instance{'s' if count > 1 else ''} in {out}")
+    if others:
+        more = f" and {len(others) - 1} more" if len(others) > 1 else ""
+        click.echo(f"{out} holds other files too, which belong to the set now: {others[0]}{more}", err=True)

@@ -16,7 +16,7 @@ from smash.cli.choices import without_option
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.isolation import run_isolated
 from smash.experiments.job import DEFAULT_MEMORY, Job, Report
-from smash.planners.protocol import OnIncumbent, SolveOptions
+from smash.planners.protocol import MOST_THREADS, OnIncumbent, SolveOptions
 from smash.planners.registry import DEFAULT
 from smash.problem.errors import MalformedFile
 from smash.problem.files import plan_text, read_instance, write_text
@@ -47,7 +47,7 @@ from smash.problem.model import Action
 )
 @click.option("--warm-start", metavar="NAME", help="Planner whose plan starts a MILP model (default: cold).")
 @click.option("--horizon", type=click.IntRange(min=1), metavar="T", help="Steps or layers of a time-indexed model.")
-@click.option("--threads", type=click.IntRange(min=1), default=1, show_default=True, help="Solver threads.")
+@click.option("--threads", type=click.IntRange(1, MOST_THREADS), default=1, show_default=True, help="Solver threads.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="For planners that draw.")
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Write the plan here (default: print).")
 def command(
@@ -82,7 +82,7 @@ def command(
     with stopped_by_signals() as stop, _progress(planner) as tell:
         report = run_isolated(job, tell, stop)
     _write(report, job, out)
-    _end(report, f"{instance}: planner {planner!r}")
+    _end(report, f"{instance}: planner {planner!r}", budget)
 
 
 def _write(report: Report, job: Job, out: Path | None) -> None:
@@ -96,11 +96,19 @@ def _write(report: Report, job: Job, out: Path | None) -> None:
         write_text(out, text)
 
 
-def _end(report: Report, who: str) -> None:
+def _without_plan(report: Report, budget: float) -> str:
+    """Say whether the budget was spent, or the planner gave up before (a horizon that is too short, say)."""
+    seconds = report.wall_seconds
+    if seconds is not None and seconds < 0.9 * budget:
+        return f"gave up after {seconds:.2f} of {budget:g} s, without a plan and without a proof that none exists"
+    return "budget spent without a plan"
+
+
+def _end(report: Report, who: str, budget: float) -> None:
     found = f"; the best plan so far has cost {report.incumbents[-1].cost}" if report.actions is not None else ""
     words = {
         "infeasible": "proven infeasible",
-        "budget-spent": "budget spent without a plan",
+        "budget-spent": _without_plan(report, budget),
         "interrupted": f"interrupted{found}",
     }.get(report.outcome, f"{report.outcome}: {report.reason}")
     if report.exit_code:

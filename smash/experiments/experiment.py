@@ -20,7 +20,7 @@ from typing import Literal, TypeVar, cast
 import msgspec
 
 from smash.experiments.job import DEFAULT_MEMORY, Job
-from smash.planners.protocol import SolveOptions
+from smash.planners.protocol import MOST_THREADS, SolveOptions
 from smash.planners.registry import get_planner, why_unknown
 from smash.problem.errors import MalformedFile, Unsupported
 from smash.problem.family import FAMILY
@@ -128,7 +128,8 @@ def check_experiment(experiment: Experiment, where: str = "experiment") -> None:
         for name in filter(None, (entry.name, entry.warm_start)):
             unknown = why_unknown(name)
             expect(unknown is None, part, unknown or "")
-        expect(entry.threads >= 1, f"{part}.threads", f"{entry.threads} is not allowed; 1 and more")
+        few = 1 <= entry.threads <= MOST_THREADS
+        expect(few, f"{part}.threads", f"{entry.threads} is not allowed; 1 to {MOST_THREADS}")
         expect(entry.horizon is None or entry.horizon >= 1, f"{part}.horizon", f"{entry.horizon} is not allowed")
         _check_grid(expect, f"{part}.", entry)
         label, chosen = entry.label or entry.name, (entry.name, entry.warm_start, entry.horizon, entry.threads)

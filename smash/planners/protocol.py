@@ -21,6 +21,10 @@ so that a run that is stopped keeps its proof. `IncumbentLog` does both.
 """
 
 
+MOST_THREADS = 256
+"""Threads that a solver may be given; with some thousands it does nothing but start them."""
+
+
 @dataclass(frozen=True, slots=True)
 class SolveOptions(PlanOptions):
     """The law's plan options, and the settings of a solve that a planner may use.

@@ -49,6 +49,15 @@ def test_generated_files_are_the_same_for_the_same_seed(tmp_path):
     ]
 
 
+def test_files_of_another_set_in_the_directory_are_named(tmp_path):
+    def generate(count, seed):
+        return smash("generate", "multi", "--blocks", 4, "--count", count, "--seed", seed, "--out", tmp_path / "a")
+
+    assert generate(3, 1).stderr == ""
+    assert generate(3, 2).stderr == ""
+    assert "multi-4-001.json and 1 more" in generate(1, 1).stderr
+
+
 @pytest.fixture
 def filed(tmp_path):
     """Write Fig. 1's kind of instance and a plan of three actions for it."""

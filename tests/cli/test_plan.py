@@ -60,6 +60,10 @@ def test_out_in_a_missing_directory_is_refused_before_planning(plan):
     assert ended.stderr.count("\n") == 1
 
 
+def test_a_planner_that_gives_up_early_has_not_spent_its_budget(plan):
+    assert "gave up after" in plan("gives-up")[0].stderr
+
+
 def test_without_out_the_plan_is_printed(tower_file):
     command = [sys.executable, "-m", "smash", "plan", str(tower_file), "--planner", "bare"]
     assert json.loads(subprocess.run(command, capture_output=True, text=True).stdout)["cost"] == 3

@@ -75,6 +75,7 @@ def test_keys_are_the_same_each_time_and_differ_between_runs(tmp_path):
         ('"greedy"', '"greedy"\nwarm_start = "x"', "known: "),
         ('"greedy"', '"greedy"\nhorizn = 3', "horizn"),
         ('"greedy"', '"greedy"\nthreads = 0', "threads"),
+        ('"greedy"', '"greedy"\nthreads = 100000', "threads"),
         ("[0.5, 0.1, 2]", "[0.5, -1]", "-1.0 is not allowed"),
         ("[0.5, 0.1, 2]", "[]", "empty"),
         ("[0.5, 0.1, 2]", "[nan]", "not allowed"),
