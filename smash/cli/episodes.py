@@ -65,6 +65,9 @@ def command(
     with stopped_by_signals() as stop, Records(results, EPISODES, EPISODE_RUN_FORMAT) as records:
         left = sum(run.key not in records.finished for run in runs)
         hours = left * SECONDS_AN_EPISODE / jobs / 3600
+        if records.set_aside:
+            words = "was damaged: set aside, its episode is carried out again"
+            click.echo(f"the last line of {records.path} {words}", err=True)
         click.echo(f"{len(runs)} episodes, {left} left, about {hours:.1f} h with {jobs} at a time", err=True)
         if dry_run:
             return

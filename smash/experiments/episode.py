@@ -12,6 +12,7 @@ from smash.execution.executor import Executor
 from smash.execution.policy import OPEN
 from smash.execution.scene_file import default_scene, read_scene
 from smash.experiments.episodes import REPLAN_BUDGET
+from smash.experiments.lifetime import end_with_parent
 from smash.experiments.replanning import replanner
 from smash.problem.files import PLAN_FORMAT_2, instance_from_document, plan_from_document
 
@@ -48,7 +49,8 @@ def run_question(question: dict[str, Any]) -> Episode:
 
 
 def main() -> None:
-    """Answer until the input ends."""
+    """Answer until the input ends, or whoever asks (its process id is the argument) is gone."""
+    end_with_parent(int(sys.argv[1]))
     # What libraries print must not get between the answers.
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)

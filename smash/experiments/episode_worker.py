@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -71,7 +72,7 @@ class EpisodeWorker:
         if self._process is None:
             self._asked = 0
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "smash.experiments.episode"],
+                [sys.executable, "-m", "smash.experiments.episode", str(os.getpid())],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=self._errors,

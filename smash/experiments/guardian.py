@@ -66,9 +66,7 @@ def _start(job: Job, said: BinaryIO) -> tuple[int, int]:
         os.close(writing)
         os.set_blocking(reading, False)
         return reading, planner
-    end_with_parent()
-    if os.getppid() != guardian:
-        os._exit(1)
+    end_with_parent(guardian)
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, signal.SIG_DFL)
     os.close(reading)

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 
 _PR_SET_PDEATHSIG = 1
 
 
-def end_with_parent() -> None:
-    """Have the kernel kill this process as soon as the thread that started it is gone (Linux; elsewhere nothing)."""
+def end_with_parent(parent: int) -> None:
+    """Have the kernel kill this process once the thread that started it is gone (Linux), or end it if it is already.
+
+    Args:
+        parent: process id of whoever started this one.
+    """
     prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != parent:
+        os._exit(1)
 
 
 def prctl(option: int, argument: int) -> None:

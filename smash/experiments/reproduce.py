@@ -7,10 +7,12 @@ begun from nothing, and what it had made before is set aside in `OUT/stale`.
 
 from __future__ import annotations
 
+import os
 import subprocess
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from threading import Event
 from time import monotonic
@@ -250,7 +252,12 @@ def _run_command(
 ) -> int:
     """Run one command to its end and keep the record's time; it is asked to end where `stop` is set."""
     process = subprocess.Popen(
-        words, stdin=subprocess.DEVNULL, stdout=said, stderr=said, start_new_session=True, preexec_fn=end_with_parent
+        words,
+        stdin=subprocess.DEVNULL,
+        stdout=said,
+        stderr=said,
+        start_new_session=True,
+        preexec_fn=partial(end_with_parent, os.getpid()),
     )
     counted = noted = begun = monotonic()
     asked: float | None = None

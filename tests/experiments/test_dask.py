@@ -11,13 +11,10 @@ from collections import Counter
 
 import pytest
 
-from analysis.comparison import compared, comparison_table, outcome_table
-from analysis.records import read_records
 from smash.experiments.records import RUNS
+from tests.experiments.tables import tables
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("third_party"), pytest.mark.timeout(600)]
-
-TIMES = ("first plan [s]", "best plan [s]", "memory [MiB]")
 
 
 def start(*arguments):
@@ -66,14 +63,6 @@ def command(file, out, *more):
 
 def records(out):
     return [json.loads(line) for line in (out / RUNS).read_text().splitlines()]
-
-
-def tables(out):
-    """The tables of a comparison but for what is measured: every planner's coverage, proofs, costs, gaps, outcomes."""
-    runs = compared(sorted(read_records(out), key=lambda record: record["key"]))
-    runs = runs.sort_values("key")
-    table = comparison_table(runs).drop(columns=list(TIMES))
-    return table.to_csv(), outcome_table(runs).to_csv()
 
 
 def worker_processes(scheduler):

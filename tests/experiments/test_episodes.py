@@ -1,13 +1,20 @@
 import json
+import os
+import random
+import shutil
+import signal
 import subprocess
 import sys
+import time
+from contextlib import suppress
 
 import msgspec
+import psutil
 import pytest
 
 from smash.execution.episode import Episode
 from smash.experiments.episode_worker import EpisodeLost, EpisodeWorker
-from smash.experiments.episodes import episode_runs, target_depth
+from smash.experiments.episodes import EPISODES, episode_runs, target_depth
 from smash.problem import PositionsGoal, make_instance
 from tests.execution.episodes import swapped_pair
 
@@ -84,3 +91,78 @@ def test_depth_counts_from_the_top():
     )
     assert target_depth(instance) == 3
     assert target_depth(swapped_pair()) is None
+
+
+def determined(results):
+    """What the seeds determine of every episode, by its key."""
+    found = {}
+    for line in (results / EPISODES).read_text().splitlines():
+        record = json.loads(line)
+        assert record["key"] not in found
+        found[record["key"]] = unmeasured(record["episode"])
+    return found
+
+
+def alive(mark):
+    found = []
+    for process in psutil.process_iter():
+        with suppress(psutil.Error, OSError):
+            if process.environ().get("MARKED") == mark and process.pid != os.getpid():
+                found.append(process)
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize("kills", [10])
+def test_killed_at_random_moments_no_episode_is_lost_or_repeated(results, tmp_path, monkeypatch, kills):
+    monkeypatch.setenv("MARKED", str(tmp_path))
+    disturbed, undisturbed = tmp_path / "disturbed", tmp_path / "undisturbed"
+    for folder in (disturbed, undisturbed):
+        folder.mkdir()
+        shutil.copyfile(results / "runs.jsonl", folder / "runs.jsonl")
+    more = ("--policy", "open", "--policy", "replan", "--seeds", "6", "--jobs", "2")
+    seen, chance = [], random.Random(8)
+    for _ in range(kills):
+        command = [sys.executable, "-m", "smash", "episodes", str(disturbed), *more]
+        running = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+        time.sleep(chance.uniform(1.0, 12.0))
+        running.send_signal(signal.SIGKILL)
+        running.wait()
+        assert not psutil.wait_procs(alive(str(tmp_path)), timeout=5)[1]
+        text = (disturbed / EPISODES).read_text() if (disturbed / EPISODES).exists() else ""
+        now = [line for line in text.splitlines(keepends=True) if line.endswith("\n")]
+        assert now[: len(seen)] == seen
+        seen = now
+    for folder in (disturbed, undisturbed):
+        ended = subprocess.run(
+            [sys.executable, "-m", "smash", "episodes", str(folder), *more], stderr=subprocess.PIPE, text=True
+        )
+        assert ended.returncode == 0, ended.stderr
+    assert (disturbed / EPISODES).read_text().startswith("".join(seen))
+    made = determined(disturbed)
+    assert len(made) == 12
+    assert made == determined(undisturbed)
+
+
+def test_a_damaged_last_episode_is_set_aside_and_carried_out_again(results, tmp_path):
+    for name in ("runs.jsonl", EPISODES):
+        shutil.copyfile(results / name, tmp_path / name)
+    whole = (tmp_path / EPISODES).read_bytes()
+    (tmp_path / EPISODES).write_bytes(whole[:-50])
+    ended = smash("episodes", tmp_path, "--policy", "open", "--policy", "replan", "--dry-run")
+    assert "was damaged: set aside, its episode is carried out again" in ended.stderr
+    assert "2 episodes, 1 left" in ended.stderr
+    assert (tmp_path / "episodes.damaged").read_bytes().strip() in whole
+
+
+def test_an_interrupted_one_ends_at_once_and_keeps_what_had_ended(results, tmp_path):
+    shutil.copyfile(results / "runs.jsonl", tmp_path / "runs.jsonl")
+    running = subprocess.Popen(
+        [sys.executable, "-m", "smash", "episodes", str(tmp_path)], stderr=subprocess.PIPE, text=True
+    )
+    time.sleep(1.5)
+    running.send_signal(signal.SIGINT)
+    _, said = running.communicate(timeout=8)
+    assert running.returncode == 130
+    assert "start again" in said.splitlines()[-1]

@@ -15,6 +15,7 @@ import pytest
 from smash.experiments.locking import InUse
 from smash.experiments.records import DAMAGED, RUNS, Records
 from smash.problem import MalformedFile
+from tests.experiments.tables import tables
 
 pytestmark = pytest.mark.usefixtures("third_party")
 
@@ -97,26 +98,32 @@ def test_a_planner_that_is_not_installed_is_said_and_left_for_later(experiment, 
     assert [record["planner"] for record in records(tmp_path / "out")] == ["bare"]
 
 
-@pytest.mark.parametrize("kills", [2, pytest.param(10, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("kills", [2, pytest.param(10, marks=[pytest.mark.slow, pytest.mark.timeout(400)])])
 def test_killed_at_random_moments_it_loses_nothing_and_repeats_nothing(experiment, tmp_path, monkeypatch, kills):
     monkeypatch.setenv("MARKED", str(tmp_path))
-    file, out = experiment(["hangs-with-plan", "sound"], count=2 * kills), tmp_path / "out"
-    seen = set()
-    for moment in random.Random(5).choices([0.4, 0.7, 1.0, 1.3], k=kills):
+    file, out = experiment(["hangs-with-plan", "sound"], count=3 * kills), tmp_path / "out"
+    seen, chance = set(), random.Random(5)
+    for _ in range(kills):
         running = subprocess.Popen(command(file, out, "--jobs", 2), stderr=subprocess.DEVNULL)
-        time.sleep(moment)
+        while not (out / RUNS).exists():
+            time.sleep(0.05)
+        time.sleep(chance.uniform(0.2, 5.0 if kills > 2 else 2.0))
         running.send_signal(signal.SIGKILL)
         running.wait()
-        if (out / RUNS).exists():
-            now = {line for line in (out / RUNS).read_text().splitlines(keepends=True) if line.endswith("\n")}
-            assert seen <= now
-            seen = now
-    ended = sweep(file, out, "--jobs", 4)
+        now = {line for line in (out / RUNS).read_text().splitlines(keepends=True) if line.endswith("\n")}
+        assert seen <= now
+        seen = now
+    ended = sweep(file, out, "--jobs", 2)
     assert ended.returncode == 0, ended.stderr
     assert seen <= set((out / RUNS).read_text().splitlines(keepends=True))
     keys = [record["key"] for record in records(out)]
-    assert len(keys) == len(set(keys)) == 4 * kills
+    assert len(keys) == len(set(keys)) == 6 * kills
     assert not left_behind(str(tmp_path))
+    if kills == 2:
+        return
+    assert 0 < len(seen) < len(keys)
+    assert sweep(file, tmp_path / "undisturbed", "--jobs", 2).returncode == 0
+    assert tables(out) == tables(tmp_path / "undisturbed")
 
 
 def test_an_interrupted_sweep_says_so_and_goes_on_later(experiment, tmp_path):
