@@ -1,4 +1,7 @@
-"""Tidy tables from records, as Parquet and CSV: one row a run, one an incumbent, one a step (`docs/records.md`)."""
+"""Tidy tables from records, as Parquet and CSV (`docs/records.md`).
+
+One row a run, one an incumbent, one a step of a plan; where plans were carried out, one an episode, one an action.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,8 @@ from typing import Any
 
 import pandas as pd
 
-from analysis.records import incumbents_table, read_records, runs_table, steps_table
+from analysis.episodes import EPISODE_FORMAT, EPISODES, actions_table, episodes_table
+from analysis.records import incumbents_table, read_lines, read_records, runs_table, steps_table
 
 EXPORT_VERSION = "smash-tables/1"
 """Written into the metadata of every Parquet file; columns may be added within a version."""
@@ -55,7 +59,7 @@ def _flat(record: dict[str, Any]) -> dict[str, Any]:
 
 
 def export(results: Path, out: Path) -> list[tuple[Path, int]]:
-    """Write `runs`, `incumbents` and `steps` as .parquet and .csv to `out`; return (file, rows) of each.
+    """Write every table as .parquet and .csv to `out`; return (file, rows) of each.
 
     Raises:
         NoRecords: where there are no records to be read.
@@ -66,6 +70,9 @@ def export(results: Path, out: Path) -> list[tuple[Path, int]]:
 
     records = [_encodable(record) for record in read_records(results)]
     tables = {"runs": tidy_runs(records), "incumbents": incumbents_table(records), "steps": steps_table(records)}
+    if (results / EPISODES).is_file():
+        carried_out = [_encodable(record) for record in read_lines(results / EPISODES, EPISODE_FORMAT)]
+        tables |= {"episodes": episodes_table(carried_out), "actions": actions_table(carried_out)}
     out.mkdir(parents=True, exist_ok=True)
     files = []
     for name, table in tables.items():

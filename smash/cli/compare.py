@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,7 @@ import click
 from smash.cli.sweep import installed_runs, run_all
 from smash.experiments.experiment import Experiment, PlannerEntry, check_experiment
 from smash.experiments.job import DEFAULT_MEMORY
+from smash.experiments.keep import keep
 from smash.problem.errors import Unsupported
 
 if TYPE_CHECKING:
@@ -73,7 +75,7 @@ def command(
     check_experiment(experiment, "smash compare")
     out = out or Path("runs") / name
     runs = installed_runs(experiment, Path())
-    run_all(runs, out, jobs, dask)
+    run_all(runs, out, jobs, dask, partial(keep, experiment, Path(), out))
     keys = {run.key for run in runs}
     files = comparison.make(out, out / "comparison", keys)
     _show(comparison, out, keys)

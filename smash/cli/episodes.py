@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from smash.cli.signals import stopped_by_signals
+from smash.experiments.asked import note_asked
 from smash.experiments.episodes import (
     EPISODE_RUN_FORMAT,
     EPISODES,
@@ -71,6 +72,7 @@ def command(
         click.echo(f"{len(runs)} episodes, {left} left, about {hours:.1f} h with {jobs} at a time", err=True)
         if dry_run:
             return
+        note_asked(results, seeds, policies, scene, labels)
         done = 0
 
         def ended(run: EpisodeRun, record: dict[str, Any]) -> None:

@@ -39,8 +39,9 @@ def command() -> None:
 def check(results: Path, experiment: Path | None) -> None:
     """Check RESULTS/runs.jsonl: complete, nothing twice, one commit, outcomes explained, plans legal, lines whole.
 
-    Exit 0 where all is well, 3 otherwise, with one line a finding on stderr. Every recorded plan is judged by the
-    law again. What is missing or damaged is done again where the sweep is started again.
+    Where there are episodes (RESULTS/episodes.jsonl) the same is asked of them. Exit 0 where all is well, 3 otherwise,
+    with one line a finding on stderr. Every recorded plan is judged by the law again. What is missing or damaged is
+    done again where the sweep is started again.
 
     \b
     Examples:
@@ -48,8 +49,9 @@ def check(results: Path, experiment: Path | None) -> None:
       smash records check runs/few-buffers --experiment few-buffers.toml
     """
     from smash.experiments.audit import audit
+    from smash.experiments.episode_audit import audit_episodes
 
-    checks = audit(results, _planned(results, experiment))
+    checks = audit(results, _planned(results, experiment)) + audit_episodes(results)
     _show(checks)
     findings = [finding for check in checks for finding in check.findings]
     for finding in findings:
@@ -62,7 +64,7 @@ def _planned(results: Path, given: Path | None) -> Sequence[Run] | str:
     """Return the runs that were planned, or why they are not known: only a file that was asked for must be there.
 
     Raises:
-        MalformedFile: where the file cannot be read, or a set that is a directory is not found beside the copy.
+        MalformedFile: where the file cannot be read, or a set that it names is not there.
     """
     from smash.experiments.experiment import experiment_runs, read_experiment
 

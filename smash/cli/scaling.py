@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import click
 
 from smash.cli.sweep import installed_runs, run_all
+from smash.experiments.experiment import INSTANCES
+from smash.experiments.keep import keep
 from smash.experiments.scaling import LARGEST, SIZES, scaling_experiment, write_scaling_suites
 
 
@@ -37,6 +40,7 @@ def command(
     Example:
       smash scaling --planner precedence --planner greedy --largest 100
     """
-    sizes = write_scaling_suites(out / "instances", largest, count, seed)
+    sizes = write_scaling_suites(out / INSTANCES, largest, count, seed)
     experiment = scaling_experiment(sizes, planners or tuple(LARGEST), budget)
-    run_all(installed_runs(experiment, out / "instances"), out, jobs, None)
+    base = out / INSTANCES
+    run_all(installed_runs(experiment, base), out, jobs, None, partial(keep, experiment, base, out))

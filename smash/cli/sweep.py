@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import shutil
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from threading import Event
 
@@ -15,6 +16,7 @@ from smash.experiments.cluster import slurm_script as batch_script
 from smash.experiments.display import Progress
 from smash.experiments.environment import commit
 from smash.experiments.experiment import Experiment, Run, experiment_runs, not_installed, read_experiment
+from smash.experiments.keep import keep
 from smash.experiments.records import Records
 from smash.experiments.sweep import execute, local_task, sweep
 from smash.problem.files import write_text
@@ -57,7 +59,7 @@ def command(
         write_text(slurm_script, batch_script(runs, experiment, out, width))
         click.echo(f"{slurm_script}: {len(runs)} runs with {width} workers, to be submitted with sbatch")
         return
-    run_all(runs, out, width, dask, experiment)
+    run_all(runs, out, width, dask, partial(keep, read, experiment.parent, out, experiment))
 
 
 def installed_runs(experiment: Experiment, base: Path) -> list[Run]:
@@ -70,15 +72,21 @@ def installed_runs(experiment: Experiment, base: Path) -> list[Run]:
     return [run for run in runs if run.job.planner not in lacking]
 
 
-def run_all(runs: list[Run], out: Path, jobs: int, dask: str | None, experiment: Path | None = None) -> None:
+def run_all(runs: list[Run], out: Path, jobs: int, dask: str | None, keep: Callable[[], None]) -> None:
     """Do what is left of `runs`, recorded in `out`, and say how it went.
+
+    Args:
+        runs: what is to be recorded.
+        out: the results directory.
+        jobs: runs at a time, here.
+        dask: where a scheduler is, or None.
+        keep: writes what is run beside the records, once the directory is ours.
 
     Raises:
         SmashError: where the directory is in use or damaged, the scheduler cannot be reached, or it was interrupted.
     """
     with stopped_by_signals() as stop, Records(out) as records:
-        if experiment is not None:
-            shutil.copyfile(experiment, out / "experiment.toml")
+        keep()
         kept = sum(run.key in records.finished for run in runs)
         _say_state(records, runs, kept)
         if kept < len(runs):

@@ -33,7 +33,9 @@ class Line(NamedTuple):
     def __str__(self) -> str:
         record = self.record
         setting = f"{record['label']} on {record['suite']}/{record['instance']}, {record['variant']}"
-        return f"line {self.number} ({setting}, {record['buffers']} buffers)"
+        episode = "policy" in record
+        more = f"{record['policy']}, seed {record['seed']}" if episode else f"{record['buffers']} buffers"
+        return f"line {self.number} ({setting}, {more})"
 
 
 class Check(NamedTuple):
@@ -54,23 +56,23 @@ def audit(results: Path, planned: Sequence[Run] | str) -> list[Check]:
     Raises:
         MalformedFile: where there is no file to be read.
     """
-    lines, damaged = read_lines(results / RUNS)
-    aside = results / DAMAGED
-    count = sum(1 for part in aside.read_bytes().split(b"\n") if part) if aside.is_file() else 0
-    set_aside = f" ({count} set aside by an earlier start)" if count else ""
-    return [
-        Check("every line whole", f"{len(lines)} whole, {len(damaged)} damaged{set_aside}", damaged),
-        *_against_plan(lines, planned),
-        _twice(lines),
-        _commits(lines),
-        _versions(lines),
-        _outcomes(lines),
-        _plans(lines),
-    ]
+    lines, whole = read_lines(results / RUNS, RunRecord, RUN_FORMAT, results / DAMAGED)
+    return [whole, *_against_plan(lines, planned), *sound(lines), _outcomes(lines), _plans(lines)]
 
 
-def read_lines(path: Path) -> tuple[list[Line], list[str]]:
-    """Return the records of a file that are whole and fit the schema, and one line for each that does not.
+def sound(lines: list[Line]) -> list[Check]:
+    """Return what is asked of records of every kind: nothing twice, one commit, one version of each package."""
+    return [_twice(lines), _commits(lines), _versions(lines)]
+
+
+def read_lines(path: Path, schema: Any, wanted: str, aside: Path) -> tuple[list[Line], Check]:
+    """Return the records of a file that are whole and fit the schema, and a check with one line for each that does not.
+
+    Args:
+        path: the file.
+        schema: the type of a record.
+        wanted: the format that it says.
+        aside: the file of the lines that earlier starts have set aside.
 
     Raises:
         MalformedFile: where the file cannot be read.
@@ -82,20 +84,22 @@ def read_lines(path: Path) -> tuple[list[Line], list[str]]:
             break
         try:
             record = json.loads(text)
-            convert(record, RunRecord, "record")
+            convert(record, schema, "record")
         except MalformedFile as error:
-            damaged.append(f"damaged: line {number}: no {RUN_FORMAT} object: {error.problem}")
+            damaged.append(f"damaged: line {number}: no {wanted} object: {error.problem}")
         except (ValueError, RecursionError):
             remedy = "as a kill leaves it; start" if number == len(texts) else "set it aside and start"
             damaged.append(f"damaged: line {number}: no JSON, {remedy} the sweep again")
         else:
             lines.append(Line(number, record))
-    return lines, damaged
+    count = sum(1 for part in aside.read_bytes().split(b"\n") if part) if aside.is_file() else 0
+    set_aside = f" ({count} set aside by an earlier start)" if count else ""
+    return lines, Check("every line whole", f"{len(lines)} whole, {len(damaged)} damaged{set_aside}", damaged)
 
 
 def _against_plan(lines: list[Line], planned: Sequence[Run] | str) -> Iterator[Check]:
     if isinstance(planned, str):
-        yield Check("complete", f"not known: {planned}")  # as of a comparison, which has no file
+        yield Check("complete", f"not known: {planned}")
         return
     there, meant = {line.record["key"] for line in lines}, {run.key for run in planned}
     missing = Counter(_setting(run) for run in planned if run.key not in there)

@@ -33,6 +33,10 @@ FURTHER = tuple(name for name in FAMILY if name != "topple")
 """Aggregating actions that a variant can leave out by `-no-NAME`."""
 """`anytime`: stands for every smaller budget too; `budget`: for its own alone; `cutoff`: checks that reading."""
 
+INSTANCES = "instances"
+SETS = "sets.json"
+"""`RESULTS/instances/sets.json`: set -> its folder beside the list, in a directory that holds its own experiment."""
+
 T = TypeVar("T")
 Expect = Callable[[bool, str, str], None]
 """`expect(holds, part, problem)` refuses the file where something does not hold."""
@@ -277,4 +281,21 @@ def budget_dependent(planner: str) -> bool:
 
 
 def _instances(suite: str, base: Path) -> list[Instance]:
-    return read_suite(suite if suite in suite_names() else str(base / suite))
+    return read_suite(suite if suite in suite_names() else str(set_directory(suite, base)))
+
+
+def set_directory(suite: str, base: Path) -> Path:
+    """Return where a set lies that is no committed one: kept beside the experiment in a results directory, or `base`.
+
+    Raises:
+        MalformedFile: where the list of kept sets is damaged.
+    """
+    kept = base / INSTANCES / SETS
+    if kept.is_file():
+        try:
+            folder = json.loads(read_bytes(kept)).get(suite)
+        except (ValueError, AttributeError):
+            raise MalformedFile(str(kept), "not an object of sets and their folders") from None
+        if isinstance(folder, str):
+            return base / INSTANCES / folder
+    return base / suite

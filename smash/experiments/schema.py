@@ -1,4 +1,4 @@
-"""The fields of a `smash-run/1` record as types; `docs/records.md` says what each means and in which unit.
+"""The fields of `smash-run/1` and `smash-episode-run/1` as types; `docs/records.md` says what each means and its unit.
 
 Within version 1 fields may be added, so unknown ones are let through; one that goes, or changes what it means,
 makes it `smash-run/2`.
@@ -86,3 +86,42 @@ class RunRecord(msgspec.Struct):
     commit: CommitField
     machine: MachineField
     without: list[str] = []
+
+
+class EpisodeField(msgspec.Struct):
+    """What a check asks of a `smash-episode/1` object; `smash.execution.episode` has all of it."""
+
+    success: bool
+    failure: dict[str, Any] | None
+    actions_executed: int
+    actions: list[dict[str, Any]]
+
+
+class EpisodeRecord(msgspec.Struct):
+    """One line of `episodes.jsonl`."""
+
+    format: Literal["smash-episode-run/1"]
+    key: str
+    run: str
+    instance: str
+    suite: str
+    label: str
+    variant: str
+    policy: str
+    seed: int
+    scene: str | None
+    blocks: int
+    depth: int | None
+    cost: int
+    status: Status
+    budget: float
+    first_plan_seconds: float | None
+    best_plan_seconds: float | None
+    episode: EpisodeField | None
+    problem: str
+    wall_seconds: float
+    started: str
+    load_average: tuple[float, float]
+    commit: CommitField
+    machine: MachineField
+    versions: dict[str, str]
