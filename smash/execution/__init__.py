@@ -14,7 +14,7 @@ table top; configurations have shape (7,)):
 - `errors`: `NoIk` and `NoMotion`, with the failure's name and exit code 5.
 
 A pick: `planner.reach(q, grasps, scene, hand=open, contact_scene=scene.without([block]))`, close, then
-`planner.line(q, (0, 0, 0.1), scene.without([block]), hand=HandState(opening, Attached.cube(block, side)))`. A place is
+`planner.line(q, (0, 0, 0.1), scene.without([block]), hand=HandState(opening, Attached.cube(side)))`. A place is
 the same with the block in the hand. A topple: `reach` to the pose before the run-up with closed fingers (a `back` of 0
 where the hand is free anyway), then `line` along the push with `scene.without(toppled)`, timed with `topple_pace`.
 """

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from smash.execution import kernel
 from smash.execution.poses import Vector
 from smash.execution.robot import panda
-from smash.execution.scene import HandState, Scene
+from smash.execution.scene import HandState, Scene, in_words
 
 DEFAULT_MARGIN = 0.010
 """Distance that a motion keeps from the scene [m]: more than the arm's tracking lag."""
@@ -109,12 +109,12 @@ class CollisionChecker:
         close = []
         for index, name in enumerate(self.scene.names):
             if not CollisionChecker(self.scene.only(index), self.hand, self.margin).free(joints):
-                close.append("the table" if name is None else f"block {name!r}")
+                close.append(in_words(name))
         return tuple(dict.fromkeys(close))
 
 
 def _hand_boxes(hand: HandState) -> kernel.Boxes:
-    """Hand, left and right finger, and the block if any, as boxes in the tool frame."""
+    """Hand, left and right finger, and what they hold, as boxes in the tool frame."""
     left = FINGER_CORNERS + np.array([0.0, hand.opening, 0.0])
     right = left * np.array([1.0, -1.0, 1.0])
     corners = np.stack([HAND_CORNERS, left, right])
@@ -122,9 +122,9 @@ def _hand_boxes(hand: HandState) -> kernel.Boxes:
     half = np.abs(corners[:, 1] - corners[:, 0]) / 2
     rotations = np.tile(np.eye(3), (3, 1, 1))
     if hand.attached is not None:
-        centres = np.vstack([centres, hand.attached.translation])
+        centres = np.vstack([centres, hand.attached.translations])
         half = np.vstack([half, hand.attached.half_extents])
-        rotations = np.concatenate([rotations, hand.attached.rotation[None]])
+        rotations = np.concatenate([rotations, hand.attached.rotations])
     return kernel.Boxes(*(np.ascontiguousarray(array) for array in (centres, half, rotations)))
 
 

@@ -76,10 +76,12 @@ class Totals(msgspec.Struct, kw_only=True):
 
 
 class Arrangement(msgspec.Struct, kw_only=True):
-    """Where the blocks are at the end, by the law."""
+    """Where blocks and carriers are at the end, by the law; the station is null of a carrier that stands at none."""
 
     piles: dict[str, list[str]]
     table: list[str]
+    carried: dict[str, list[str]] = {}
+    stations: dict[str, str | None] = {}
 
 
 class Episode(msgspec.Struct, kw_only=True):

@@ -8,21 +8,23 @@ tries a disturbed pick again, and asks for a new plan from the observed state wh
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
 
+from smash.execution.aggregate_motion import Geometry
 from smash.execution.episode import Arrangement, Episode, Failure, Origin, Performed, Times, Totals
 from smash.execution.errors import ExecutionFailure, Fell, NotAtGoal
 from smash.execution.grounding import Grounder, Task
 from smash.execution.performing import Performer
 from smash.execution.policy import Policy
+from smash.execution.readback import NOWHERE
 from smash.execution.recovery import Recovery
 from smash.execution.robot import READY
-from smash.execution.start import starting_poses
+from smash.execution.start import starting_carriers, starting_poses
 from smash.execution.steps import Steps
 from smash.execution.tabletop import Tabletop
-from smash.execution.timing import Pace
 from smash.execution.world import Frame, World
 from smash.problem.errors import IllegalAction
 from smash.problem.files import action_from_list, action_list
@@ -70,9 +72,9 @@ class Executor:
         self.policy = policy or Policy()
         self.replanner = replanner
         self.law = Law(instance, plan.options)
-        self.slots = tabletop.bind(instance)
-        self.steps = Steps(tabletop.side, Pace(tabletop.velocity, tabletop.acceleration), seed)
-        self.grounder = Grounder(self.steps, self.slots)
+        self.table = Geometry(tabletop.bind(instance), tabletop.bind_stations(instance))
+        self.steps = Steps(tabletop, seed)
+        self.grounder = Grounder(self.steps)
         self.performed: list[Performed] = []
         self.replans = 0
         self.task_seconds = 0.0
@@ -83,10 +85,11 @@ class Executor:
         """Carry out the plan and judge the result."""
         self.steps.warm_up()
         generator = np.random.default_rng(self.seed)
-        poses = starting_poses(self.instance, self.slots, self.tabletop, generator)
-        with World(self.tabletop, poses, READY, gui=self._gui, on_frame=self._on_frame) as world:
+        carriers = starting_carriers(self.instance, self.table.stations, self.tabletop)
+        poses = starting_poses(self.instance, self.table.slots, self.tabletop, generator, carriers)
+        with World(self.tabletop, poses, READY, carriers=carriers, gui=self._gui, on_frame=self._on_frame) as world:
             self.world = world
-            self.performer = Performer(world, self.grounder, self.slots, self.policy)
+            self.performer = Performer(world, self.grounder, self.table, self.policy)
             self.recovery = Recovery(self.instance, self.performer, self._recover)
             world.settle()
             failure = self._run_plan()
@@ -110,7 +113,7 @@ class Executor:
             tasks, origin = again, "replan"
 
     def _ground(self, actions: Sequence[Action]) -> list[Task]:
-        return self.grounder.ground(actions, self.performer.observe(), self.world.poses(), self.world.commanded())
+        return self.grounder.ground(actions, self.performer.observe(), self.performer.look(), self.world.commanded())
 
     def _carry_out(self, tasks: Sequence[Task], origin: Origin) -> ExecutionFailure | None:
         """Perform tasks until one fails or what is observed makes the rest of the plan senseless."""
@@ -145,6 +148,7 @@ class Executor:
             if observed.key() != expected.key() and not self._still_good(observed, rest):
                 raise Fell(_difference(expected, observed))
             expected.piles, expected.table, expected.hand = observed.piles, observed.table, observed.hand
+            expected.carried, expected.stations = observed.carried, observed.stations
         except ExecutionFailure as failure:
             row.outcome, row.reason = failure.failure, str(failure)
             raise
@@ -187,6 +191,8 @@ class Executor:
         if last is not None and last.outcome in ("no motion", "slip", "IK", "out of reach"):
             self.recovery.clear(action_from_list(list(last.action), "episode"))
         state = self.performer.observe()
+        if NOWHERE in state.stations.values():
+            return None
         begun = perf_counter()
         actions = None if self.replanner is None else self.replanner(observed_instance(self.instance, state))
         self.task_seconds += perf_counter() - begun
@@ -212,7 +218,7 @@ class Executor:
                 action=last.action if last else None,
                 reason=str(failure),
             ),
-            plan_cost=len(self.plan.actions or ()),
+            plan_cost=self.law.price(self.plan.actions or ()),
             actions_executed=len(rows),
             replans=self.replans,
             retries=self.performer.retries,
@@ -224,20 +230,38 @@ class Executor:
                 execution=sum(row.times.execution for row in rows),
                 task=self.task_seconds,
             ),
-            final=Arrangement(piles={k: list(v) for k, v in final.piles.items() if v}, table=sorted(final.table)),
+            final=Arrangement(
+                piles={k: list(v) for k, v in final.piles.items() if v},
+                table=sorted(final.table),
+                carried={k: sorted(v) for k, v in final.carried.items()},
+                stations={k: None if v == NOWHERE else v for k, v in final.stations.items()},
+            ),
             actions=rows,
         )
 
 
 def observed_instance(instance: Instance, state: State) -> Instance:
     """The instance that remains: the same goal from the observed state."""
-    piles = {location: tuple(state.piles.get(location, ())) for location in instance.locations}
-    table = tuple(block for block in instance.blocks if block in state.table)
-    return Instance(instance.name, instance.blocks, instance.stacks, instance.buffers, piles, instance.goal, table)
+    carriers = tuple(
+        replace(carrier, at=state.stations[carrier.name], holds=tuple(sorted(state.carried[carrier.name])))
+        for carrier in instance.carriers
+    )
+    return replace(
+        instance,
+        start={location: tuple(state.piles.get(location, ())) for location in instance.locations},
+        table=tuple(block for block in instance.blocks if block in state.table),
+        carriers=carriers,
+    )
 
 
 def _difference(expected: State, observed: State) -> str:
     for location, pile in expected.piles.items():
         if observed.piles[location] != pile:
             return f"location {location!r} holds {observed.piles[location]}, expected {pile}"
+    for carrier, station in expected.stations.items():
+        if observed.stations[carrier] != station:
+            return f"carrier {carrier!r} does not stand at {station!r}"
+        if observed.carried[carrier] != expected.carried[carrier]:
+            held, wanted = sorted(observed.carried[carrier]), sorted(expected.carried[carrier])
+            return f"carrier {carrier!r} holds {held}, expected {wanted}"
     return f"the table region holds {sorted(observed.table)}, expected {sorted(expected.table)}"

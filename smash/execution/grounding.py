@@ -8,19 +8,20 @@ is bridged: to the revealed pick, from there to the stored place, and back to th
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from smash.execution.aggregate_motion import Geometry
 from smash.execution.block_pose import BlockPose, standing
-from smash.execution.errors import ExecutionFailure
+from smash.execution.errors import ExecutionFailure, NoMotion
+from smash.execution.family import MOTIONS
 from smash.execution.poses import Vector
-from smash.execution.pushes import topple
+from smash.execution.scene import Scene
 from smash.execution.steps import Approach, Move, Segment, Steps
 from smash.execution.stopwatch import Stopwatch
-from smash.execution.tabletop import Slot
 from smash.problem.errors import Unsupported
-from smash.problem.model import Action, Pick, Place, State
-from smash.problem.topple import Topple
+from smash.problem.family import kind_of
+from smash.problem.model import Action, Aggregating, Pick, Place, State
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +35,7 @@ class Task:
         seconds: Wall time of its planning.
         cpu_seconds: The planning thread's time.
         problem: Why planning it failed, if it did; it is then tried again when its turn comes.
+        anchor: Where it takes what is taken hold of to be [m], shape (3,); None where that is of no account.
     """
 
     action: Action
@@ -42,6 +44,7 @@ class Task:
     seconds: float = 0.0
     cpu_seconds: float = 0.0
     problem: ExecutionFailure | None = None
+    anchor: Vector | None = None
 
     @property
     def end(self) -> Vector | None:
@@ -57,78 +60,101 @@ class Grounder:
 
     Args:
         steps: Plans the motions of one action.
-        slots: The slot of every location.
     """
 
-    def __init__(self, steps: Steps, slots: Mapping[str, Slot]) -> None:
+    def __init__(self, steps: Steps) -> None:
         self.steps = steps
-        self.slots = slots
 
-    def ground(
-        self, actions: Sequence[Action], state: State, poses: Mapping[str, BlockPose], joints: Vector
-    ) -> list[Task]:
+    def ground(self, actions: Sequence[Action], state: State, where: Geometry, joints: Vector) -> list[Task]:
         """Plan all that the poses known at the start determine.
 
         Args:
             actions: A plan that is legal from `state`.
             state: Where the blocks are, by the law.
-            poses: Where they are on the table, all of them.
+            where: The poses of all of them, and of the carriers.
             joints: Where the arm is [rad], shape (7,).
         """
-        piles, known, tasks = {name: list(pile) for name, pile in state.piles.items()}, dict(poses), []
+        state, where, tasks = state.copy(), where.seen(where.blocks, where.carriers), []
         for action in actions:
             with Stopwatch() as watch:
                 try:
-                    task = self.task(action, piles, known, joints)
+                    task = self.task(action, state, where, joints)
                 except ExecutionFailure as failure:
                     task = Task(action, None, problem=failure)
             tasks.append(replace(task, seconds=watch.wall, cpu_seconds=watch.cpu))
-            self._foresee(action, piles, known)
+            self._foresee(action, state, where)
             joints = joints if task.end is None else task.end
         return tasks
 
     def task(
-        self,
-        action: Action,
-        piles: Mapping[str, Sequence[str]],
-        poses: Mapping[str, BlockPose],
-        joints: Vector,
-        approach: Approach | None = None,
+        self, action: Action, state: State, where: Geometry, joints: Vector, approach: Approach | None = None
     ) -> Task:
-        """Plan one action as far as `poses` allow; `approach` is the way down that a place has promised.
+        """Plan one action as far as the known poses allow; `approach` is the way down that a place has promised.
 
         Raises:
             ExecutionFailure: where there is no motion for it.
         """
         match action:
             case Pick(block, _):
-                if block not in poses:
+                if block not in where.blocks:
                     return Task(action, None)
-                return Task(action, self.steps.pick(joints, block, poses[block], self.steps.scene(poses)))
+                pose, scene = where.blocks[block], self._scene(where)
+                return Task(action, self.steps.pick(joints, block, pose, scene), anchor=pose.position)
             case Place(block, target):
-                scene = self.steps.scene(poses)
-                way = approach or self.steps.landing(joints, block, self.slots[target], len(piles[target]) + 1, scene)
-                if block not in poses:
+                scene = self._scene(where)
+                way = approach or self.steps.landing(joints, block, self.stand(target, state, where), scene)
+                if block not in where.blocks:
                     return Task(action, None, way)
                 return Task(action, self.steps.place(joints, block, way, scene), way)
-            case Topple(location, height):
-                pile = tuple(piles[location])
-                return Task(action, topple(self.steps, joints, self.slots[location], pile, height, poses))
-            case _:
-                raise Unsupported(f"{action}: the arm has no motion for it")
+            case Aggregating():
+                motion = MOTIONS.get(type(action))
+                if motion is None:
+                    raise Unsupported(f"{action}: the arm has no motion for it")
+                segments = motion.plan(self.steps, joints, action, state, where)
+                return Task(action, segments, anchor=self.anchor(action, state, where))
 
-    def _foresee(self, action: Action, piles: dict[str, list[str]], known: dict[str, BlockPose]) -> None:
-        """Move piles and known poses on; a block in the hand keeps its entry: it is known to be held."""
+    def anchor(self, action: Action, state: State, where: Geometry) -> Vector | None:
+        """The position of what the hand takes hold of in an action [m], shape (3,), where that is known."""
+        match action:
+            case Pick(block, _):
+                return where.blocks[block].position if block in where.blocks else None
+            case Aggregating():
+                return MOTIONS[type(action)].anchor(action, state, where)
+        return None
+
+    def stand(self, target: str, state: State, where: Geometry) -> BlockPose:
+        """Where the next block stands that is placed on a location or a carrier.
+
+        Raises:
+            NoMotion: where a block lies across all cells of a carrier.
+        """
+        if target in where.carriers:
+            tray, pose = self.steps.tray, where.carriers[target]
+            free = tray.free_cells(pose, where.blocks)
+            if not free:
+                raise NoMotion(f"no cell of carrier {target!r} is free")
+            return tray.cell(pose, free[0])
+        slot = where.slots[target]
+        return standing(slot.x, slot.y, (len(state.piles[target]) + 0.5) * self.steps.side, slot.angle)
+
+    def _scene(self, where: Geometry) -> Scene:
+        return self.steps.scene(where.blocks, where.carriers)
+
+    def _foresee(self, action: Action, state: State, where: Geometry) -> None:
+        """Move state and known poses on; a block in the hand keeps its entry: it is known to be held."""
         match action:
             case Pick(block, source):
-                if source in piles:
-                    piles[source].remove(block)
+                if source in state.piles:
+                    state.piles[source].remove(block)
+                else:
+                    state.carried.get(source, state.table).discard(block)
             case Place(block, target):
-                slot = self.slots[target]
-                level = len(piles[target]) + 0.5
-                known[block] = standing(slot.x, slot.y, level * self.steps.side, slot.angle)
-                piles[target].append(block)
-            case Topple(location, height):
-                for block in piles[location][height - 1 :]:
-                    known.pop(block, None)
-                del piles[location][height - 1 :]
+                where.blocks[block] = self.stand(target, state, where)
+                if target in state.piles:
+                    state.piles[target].append(block)
+                else:
+                    state.carried[target].add(block)
+            case Aggregating():
+                if type(action) in MOTIONS:
+                    MOTIONS[type(action)].foresee(self.steps, action, state, where)
+                kind_of(action).apply(state, action)

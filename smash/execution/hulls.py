@@ -17,10 +17,10 @@ import pinocchio
 from numpy.typing import NDArray
 
 from smash.execution.robot import READY, panda_urdf
-from smash.execution.scene import Attached, HandState, Scene
+from smash.execution.scene import Attached, HandState, Scene, in_words
 
 HAND = ("panda_hand_0", "panda_leftfinger_0", "panda_rightfinger_0")
-BLOCK = "carried block"
+CARRIED = "what is carried"
 _NEAR_BASE = tuple(f"panda_link{link}_0" for link in (0, 1, 2))
 _WRIST = tuple(f"panda_link{link}_0" for link in (5, 6, 7))
 SELF_PAIRS = (
@@ -88,8 +88,7 @@ class HullChecker:
             self._pair(first, second)
         parts = MOVING
         if self.hand.attached is not None:
-            self._carry(self.hand.attached)
-            parts = (*MOVING, BLOCK)
+            parts += self._carry(self.hand.attached)
         for index in range(len(scene.names)):
             box = self._add_box(f"box {index}", scene.half_extents[index] - tolerance)
             box.placement = pinocchio.SE3(scene.rotations[index], scene.centres[index])
@@ -119,8 +118,9 @@ class HullChecker:
     def _say(self, index: int) -> str:
         name = str(self._geometry.geometryObjects[index].name)
         if name.startswith("box "):
-            block = self.scene.names[int(name[4:])]
-            return "the table" if block is None else f"block {block!r}"
+            return in_words(self.scene.names[int(name[4:])])
+        if name.startswith(CARRIED):
+            return CARRIED
         return name.removeprefix("panda_").removesuffix("_0")
 
     def _pair(self, first: str, second: str) -> None:
@@ -130,15 +130,18 @@ class HullChecker:
     def _add_box(self, name: str, half: NDArray[np.float64]) -> Any:
         return pinocchio.GeometryObject(name, 0, pinocchio.SE3.Identity(), coal.Box(*(2 * half)))
 
-    def _carry(self, block: Attached) -> None:
-        """Hang the block on link 7, where the hand is fixed."""
-        box = self._add_box(BLOCK, block.half_extents)
+    def _carry(self, load: Attached) -> tuple[str, ...]:
+        """Hang what is held on link 7, where the hand is fixed; return the names of its boxes."""
         frame = self._model.frames[self._model.getFrameId("panda_grasptarget")]
-        in_tool = pinocchio.SE3(block.rotation, block.translation)
-        box = pinocchio.GeometryObject(BLOCK, frame.parentJoint, frame.placement * in_tool, box.geometry)
-        self._geometry.addGeometryObject(box)
-        for near in (*_NEAR_BASE, "panda_link3_0", "panda_link4_0", "panda_link5_0"):
-            self._pair(BLOCK, near)
+        names = tuple(f"{CARRIED} {index}" for index in range(len(load.half_extents)))
+        for index, name in enumerate(names):
+            in_tool = pinocchio.SE3(load.rotations[index], load.translations[index])
+            shape = coal.Box(*(2 * load.half_extents[index]))
+            box = pinocchio.GeometryObject(name, frame.parentJoint, frame.placement * in_tool, shape)
+            self._geometry.addGeometryObject(box)
+            for near in (*_NEAR_BASE, "panda_link3_0", "panda_link4_0", "panda_link5_0"):
+                self._pair(name, near)
+        return names
 
 
 def densify(waypoints: NDArray[np.float64], step: float) -> NDArray[np.float64]:

@@ -99,6 +99,26 @@ class MotionPlanner:
                     return Path(straight, "straight")
         return self._tree_path(begin, ends, checker, hulls)
 
+    def straight(
+        self, start: Vector, end: Vector, scene: Scene, *, hand: HandState | None = None, margin: float | None = None
+    ) -> Path:
+        """The straight joint segment between two configurations [rad], shape (7,), and nothing else.
+
+        Raises:
+            NoMotion: Something is in the way, or a joint limit.
+        """
+        held = hand or HandState()
+        checker = CollisionChecker(scene, held, self.margin if margin is None else margin)
+        waypoints = densify(np.stack([start, end]), HULL_STEP)
+        if not within_limits(waypoints):
+            raise NoMotion("the way is beyond the joint limits")
+        if not checker.segment_free(waypoints[0], waypoints[-1]):
+            raise NoMotion(f"the way is blocked by {_blocked_by(waypoints, checker)}")
+        contact = self._contact(waypoints, self._hulls(scene, held))
+        if contact is not None:
+            raise NoMotion(f"on the way, {contact}")
+        return Path(waypoints, "straight")
+
     def line(
         self,
         start: Vector,

@@ -127,7 +127,7 @@ def _pick_and_place(table: Table, generator: np.random.Generator, planner: Motio
     rest = table.scene.without([block])
     grasps = [table.pose(block, turn) for turn in (0, 1, 2, 3)]
     grasped = _reach(READY, grasps, table.scene, rest, OPEN, planner, tally)
-    held = HandState(SIDE / 2, Attached.cube(block, SIDE))
+    held = HandState(SIDE / 2, Attached.cube(SIDE))
     lifted = _line(grasped, LIFT, rest, held, planner, tally)
     radius, angle = (*STACKS, *BUFFERS)[target]
     height = SIDE * (len(table.piles[target]) + 0.5) + 0.001
@@ -214,7 +214,7 @@ def compare_checkers(states: int, seed: int) -> Counter[tuple[bool, bool]]:
     """(free by the spheres, free by the hulls) of random configurations on a random table, a block in the hand."""
     generator = np.random.default_rng(seed)
     table = random_table(generator, 9)
-    held = HandState(SIDE / 2, Attached.cube("held", SIDE))
+    held = HandState(SIDE / 2, Attached.cube(SIDE))
     fast, exact = CollisionChecker(table.scene, held, 0.0), HullChecker(table.scene, held, 0.0)
     verdicts: Counter[tuple[bool, bool]] = Counter()
     for joints in generator.uniform(LOWER, UPPER, (states, 7)):

@@ -6,23 +6,22 @@ block is in the hand.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from math import hypot
 
 import numpy as np
 
+from smash.execution.aggregate_motion import Geometry
 from smash.execution.episode import Performed
 from smash.execution.errors import ExecutionFailure, NoIk, OutOfReach, Slip
+from smash.execution.family import MOTIONS
 from smash.execution.grounding import Grounder, Task
 from smash.execution.policy import Policy
 from smash.execution.readback import read_state
-from smash.execution.robot import panda
 from smash.execution.steps import OPEN_SECONDS, OPENINGS, Grip, Move, Segment
 from smash.execution.stopwatch import Stopwatch
-from smash.execution.tabletop import Slot
 from smash.execution.world import World
-from smash.problem.model import TABLE, Pick, Place, State
-from smash.problem.topple import Topple
+from smash.problem.model import TABLE, Aggregating, Pick, Place, State
 
 GRASPED_WITHIN = 0.5
 """A held block's centre is within this share of its side of the tool."""
@@ -30,8 +29,8 @@ MOVED = 0.004
 """A block this far from where a motion was planned for [m] needs a new one."""
 SCENE_ALLOWANCE = 0.006
 """Motions planned offline may come this much closer to revealed blocks than planned [m]."""
-MOST_PUSHES = 5
-"""A topple that has left blocks standing above the cut after so many pushes has failed."""
+MOST_MOTIONS = 5
+"""An aggregating action that is not done after so many motions (a topple with blocks above its cut) has failed."""
 PAUSE = 0.05
 """Standing still between two motions, for the arm to catch up [s]."""
 
@@ -42,7 +41,7 @@ class Performer:
     Args:
         world: Where it happens.
         grounder: Plans motions.
-        slots: The slot of every location.
+        table: The slots of locations and stations.
         policy: What to do about failures.
 
     Attributes:
@@ -50,10 +49,10 @@ class Performer:
         retries: How many picks were tried again.
     """
 
-    def __init__(self, world: World, grounder: Grounder, slots: Mapping[str, Slot], policy: Policy) -> None:
+    def __init__(self, world: World, grounder: Grounder, table: Geometry, policy: Policy) -> None:
         self.world = world
         self.grounder = grounder
-        self.slots = slots
+        self.table = table
         self.policy = policy
         self.side = world.tabletop.side
         self.hand: str | None = None
@@ -61,7 +60,11 @@ class Performer:
 
     def observe(self) -> State:
         """The law's state in the scene as it is."""
-        return read_state(self.world.poses(), self.slots, self.side, self.hand)
+        return read_state(self.look(), self.world.tabletop, self.hand)
+
+    def look(self) -> Geometry:
+        """Where things are."""
+        return self.table.seen(self.world.poses(), self.world.carriers())
 
     def perform(self, task: Task, row: Performed, state: State) -> None:
         """Perform an action, a pick several times where it fails.
@@ -88,7 +91,7 @@ class Performer:
 
     def _try(self, task: Task, row: Performed, state: State) -> None:
         segments = task.segments
-        if segments is None or not self._usable(task):
+        if segments is None or not self._usable(task, state):
             row.repaired = row.repaired or segments is not None
             segments = self._planned(task, state, row)
         match task.action:
@@ -100,18 +103,18 @@ class Performer:
                 carry_out(self.world, segments)
                 self.hand = None
                 self.world.wait(PAUSE)
-                if self.observe().piles[target][-1:] != [block]:
+                if not _stands_on(block, target, self.observe()):
                     raise Slip(f"block {block!r} does not stand on {target!r} after it was let go")
-            case Topple():
-                self._topple(task.action, segments, row)
+            case Aggregating():
+                self._aggregate(task.action, segments, row)
 
-    def _topple(self, action: Topple, segments: Sequence[Segment], row: Performed) -> None:
-        """Push, look, and push again as long as blocks stand above the cut: many blocks fall in several pushes."""
-        for last in (*[False] * (MOST_PUSHES - 1), True):
+    def _aggregate(self, action: Aggregating, segments: Sequence[Segment], row: Performed) -> None:
+        """Perform, look, and go on as long as the action is not done: many blocks fall in several pushes."""
+        for last in (*[False] * (MOST_MOTIONS - 1), True):
             carry_out(self.world, segments)
             self.world.settle()
             state = self.observe()
-            if last or len(state.piles[action.location]) < action.height:
+            if last or not MOTIONS[type(action)].unfinished(action, state):
                 return
             segments = self._planned(Task(action, None), state, row)
 
@@ -127,33 +130,32 @@ class Performer:
 
     def _plan_online(self, task: Task, state: State) -> list[Segment]:
         """Plan an action from the observed scene and the arm's present state."""
-        poses, joints = self.world.poses(), self.world.commanded()
+        where, joints = self.look(), self.world.commanded()
         try:
             try:
-                again = self.grounder.task(task.action, state.piles, poses, joints, task.approach)
+                again = self.grounder.task(task.action, state, where, joints, task.approach)
             except ExecutionFailure:
                 if task.approach is None:
                     raise
-                again = self.grounder.task(task.action, state.piles, poses, joints)
+                again = self.grounder.task(task.action, state, where, joints)
         except NoIk as problem:
             if isinstance(task.action, Pick) and task.action.source == TABLE:
                 raise OutOfReach(f"block {task.action.block!r}: {problem}") from None
             raise
         return again.segments or []
 
-    def _usable(self, task: Task) -> bool:
+    def _usable(self, task: Task, state: State) -> bool:
         """Whether a motion planned earlier starts where the arm is, and fits the scene (if the policy looks at it)."""
         moves = [segment for segment in task.segments or () if isinstance(segment, Move)]
         if moves and np.abs(moves[0].path.start - self.world.commanded()).max() > 1e-6:
             return False
         if not self.policy.repair:
             return True
-        poses = self.world.poses()
-        if isinstance(task.action, Pick) and moves:
-            tool = panda().forward(moves[-2].path.end).position
-            if hypot(*(poses[task.action.block].position - tool)[:2]) > MOVED:
-                return False
-        scene = self.grounder.steps.scene(poses)
+        where = self.look()
+        anchor = self.grounder.anchor(task.action, state, where)
+        if anchor is not None and task.anchor is not None and hypot(*(anchor - task.anchor)[:2]) > MOVED:
+            return False
+        scene = self.grounder.steps.scene(where.blocks, where.carriers)
         return all(move.free(scene, SCENE_ALLOWANCE) for move in moves)
 
     def _require_grasp(self, block: str) -> None:
@@ -163,6 +165,10 @@ class Performer:
             return
         self.world.grip(self.side / 2 + OPENINGS[0], OPEN_SECONDS)
         raise Slip(f"block {block!r} is {away * 100:.1f} cm from the fingers after the grasp")
+
+
+def _stands_on(block: str, target: str, state: State) -> bool:
+    return state.piles[target][-1:] == [block] if target in state.piles else block in state.carried[target]
 
 
 def carry_out(world: World, segments: Sequence[Segment]) -> None:

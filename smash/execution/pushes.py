@@ -13,6 +13,7 @@ from math import ceil, cos, sin
 
 import numpy as np
 
+from smash.execution.aggregate_motion import AggregateMotion, Geometry
 from smash.execution.block_pose import BlockPose
 from smash.execution.collision import FINGER_CORNERS, HAND_CORNERS, HAND_TO_TOOL
 from smash.execution.errors import ExecutionFailure, NoIk, NoMotion
@@ -23,6 +24,8 @@ from smash.execution.scene import HandState, Scene
 from smash.execution.steps import Segment, Steps
 from smash.execution.tabletop import Slot
 from smash.execution.timing import Pace
+from smash.problem.model import State
+from smash.problem.topple import Topple
 
 RUN_UP = 0.10
 """From the start of the push to the first contact [m]."""
@@ -99,7 +102,7 @@ def directions(slot: Slot, falling: int, others: Iterable[BlockPose], side: floa
     Args:
         slot: Where the pile stands.
         falling: How many blocks shall fall.
-        others: Poses of all blocks that stand or lie elsewhere.
+        others: Poses of all that stands or lies elsewhere.
         side: Side of a block [m].
     """
     area = strip(falling)
@@ -121,6 +124,7 @@ def topple(
     pile: tuple[str, ...],
     height: int,
     poses: Mapping[str, BlockPose],
+    carriers: Mapping[str, BlockPose] | None = None,
 ) -> list[Segment]:
     """From `start` [rad] to before the pile, through its upper part, and back.
 
@@ -133,14 +137,15 @@ def topple(
         pile: Its blocks, bottom first.
         height: The lowest level that shall fall, 1 is the bottom.
         poses: All blocks whose poses are known.
+        carriers: All carriers.
 
     Raises:
         NoIk, NoMotion: where no direction allows it; the message is about the preferred one.
     """
     cut = first_cut(height, len(pile))
     falling = pile[cut - 1 :]
-    others = [pose for name, pose in poses.items() if name not in pile]
-    scene = steps.scene(poses)
+    others = [pose for name, pose in poses.items() if name not in pile] + list((carriers or {}).values())
+    scene = steps.scene(poses, carriers)
     problem: ExecutionFailure | None = None
     for direction in directions(slot, len(falling), others, steps.side):
         try:
@@ -148,6 +153,34 @@ def topple(
         except ExecutionFailure as failure:
             problem = problem or failure
     raise problem or NoIk("the stack has no topple direction")
+
+
+class ToppleMotion(AggregateMotion[Topple]):
+    """A push through the pile; where its blocks come to rest, nobody knows before."""
+
+    action = Topple
+
+    def plan(self, steps: Steps, start: Vector, action: Topple, state: State, where: Geometry) -> list[Segment]:
+        """Plan the push.
+
+        Raises:
+            NoIk, NoMotion: where no direction allows it.
+        """
+        pile, slot = tuple(state.piles[action.location]), where.slots[action.location]
+        return topple(steps, start, slot, pile, action.height, where.blocks, where.carriers)
+
+    def foresee(self, steps: Steps, action: Topple, state: State, where: Geometry) -> None:
+        """Forget the poses of what falls."""
+        for block in state.piles[action.location][action.height - 1 :]:
+            where.blocks.pop(block, None)
+
+    def unfinished(self, action: Topple, state: State) -> bool:
+        """Whether blocks still stand above the cut."""
+        return len(state.piles[action.location]) >= action.height
+
+    def places(self, action: Topple) -> tuple[str, ...]:
+        """Return the pile's location."""
+        return (action.location,)
 
 
 def _push(

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from smash.execution.block_pose import BlockPose
-from smash.execution.tabletop import Slot
+from smash.execution.aggregate_motion import Geometry
+from smash.execution.block_pose import BlockPose, quarter_turn
+from smash.execution.tabletop import Slot, Tabletop
+from smash.execution.tray import heading
 from smash.problem.model import State
 
 PLACED_WITHIN = 1 / 3
@@ -14,24 +16,29 @@ LEVEL_WITHIN = 0.2
 """... within this share of its level's height, ..."""
 LARGEST_TILT = 0.1
 """... and leans no further than this [rad]."""
+TRAY_WITHIN = 0.02
+"""A carrier stands at a station if its middle is this near to it [m] ..."""
+LARGEST_TURN = 0.15
+"""... and it is turned from it by no more than this [rad]."""
+NOWHERE = "\uffff"
+"""Where a carrier is that stands at no station: not a character, hence nobody's name."""
 
 
-def read_state(
-    poses: Mapping[str, BlockPose], slots: Mapping[str, Slot], side: float, hand: str | None = None
-) -> State:
+def read_state(where: Geometry, tabletop: Tabletop, hand: str | None = None) -> State:
     """The law's state in the observed scene.
 
-    A location holds the unbroken column of upright blocks over its middle; everything else lies in the table region.
+    A location holds the unbroken column of upright blocks over its middle, a carrier the blocks that stand in its
+    cells; everything else lies in the table region. A carrier that stands at no station is at `NOWHERE`.
 
     Args:
-        poses: Settled poses of all blocks.
-        slots: The slot of every location.
-        side: Side of a block [m].
+        where: Settled poses of all blocks and carriers.
+        tabletop: The scene.
         hand: The block between the fingers, which stands nowhere.
     """
-    loose = {name: pose for name, pose in poses.items() if name != hand}
+    side = tabletop.side
+    loose = {name: pose for name, pose in where.blocks.items() if name != hand}
     piles: dict[str, list[str]] = {}
-    for location, slot in slots.items():
+    for location, slot in where.slots.items():
         column = sorted(
             (float(pose.position[2]), name) for name, pose in loose.items() if _over(pose, slot, PLACED_WITHIN * side)
         )
@@ -43,7 +50,25 @@ def read_state(
         for name in pile:
             del loose[name]
         piles[location] = pile
-    return State(piles, set(loose), hand)
+    carried: dict[str, set[str]] = {}
+    for carrier, pose in where.carriers.items():
+        assert tabletop.tray is not None
+        carried[carrier] = {name for name, block in loose.items() if tabletop.tray.cell_of(pose, block) is not None}
+        for name in carried[carrier]:
+            del loose[name]
+    stations = {carrier: _station(pose, where.stations, tabletop) for carrier, pose in where.carriers.items()}
+    return State(piles, set(loose), hand, carried, stations)
+
+
+def _station(pose: BlockPose, stations: Mapping[str, Slot], tabletop: Tabletop) -> str:
+    """The station that a tray stands at, flat on the table and along it."""
+    if pose.tilt > LARGEST_TILT or abs(pose.position[2]) > tabletop.side / 2:
+        return NOWHERE
+    for station, slot in stations.items():
+        turned = abs(quarter_turn(heading(pose) - slot.angle))
+        if pose.distance(slot.x, slot.y) < TRAY_WITHIN and turned < LARGEST_TURN:
+            return station
+    return NOWHERE
 
 
 def _over(pose: BlockPose, slot: Slot, tolerance: float) -> bool:

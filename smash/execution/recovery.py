@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from smash.execution.errors import ExecutionFailure
+from smash.execution.family import MOTIONS
 from smash.execution.performing import Performer
-from smash.problem.model import TABLE, Action, Instance, Pick, Place
-from smash.problem.topple import Topple
+from smash.problem.model import TABLE, Action, Aggregating, Instance, Pick, Place
 
 NEAR = 0.11
 """Loose blocks this near to a place can be in the hand's way there [m]."""
@@ -44,25 +44,30 @@ class Recovery:
 
     def clear(self, action: Action) -> None:
         """Move what is in the way of an action that could not be done: a loose block, or a pile that hides one."""
+        where, state = self.performer.look(), self.performer.observe()
         match action:
             case Pick(block, _):
-                x, y = (float(value) for value in self.performer.world.pose(block).position[:2])
-                spared = {block}
-            case Place(_, location) | Topple(location, _):
-                x, y = self.performer.slots[location].x, self.performer.slots[location].y
-                spared = set()
-        poses, state = self.performer.world.poses(), self.performer.observe()
-        loose = [name for name in state.table if name not in spared and poses[name].distance(x, y) < NEAR]
-        for name in sorted(loose, key=lambda name: (-round(poses[name].position[2], 2), poses[name].distance(x, y))):
+                x, y = (float(value) for value in where.blocks[block].position[:2])
+                points, spared = [(x, y)], {block}
+            case Place(_, target):
+                points, spared = [where.point(target)], set()
+            case Aggregating():
+                points, spared = [where.point(place) for place in MOTIONS[type(action)].places(action)], set()
+
+        def away(name: str) -> float:
+            return min(where.blocks[name].distance(*point) for point in points)
+
+        loose = [name for name in state.table if name not in spared and away(name) < NEAR]
+        for name in sorted(loose, key=lambda name: (-round(where.blocks[name].position[2], 2), away(name))):
             if self._set_aside(name, TABLE):
                 return
         if isinstance(action, Pick) and action.source == TABLE:
-            self._uncover(action.block, x, y)
+            self._uncover(action.block, *points[0])
 
     def _uncover(self, block: str, x: float, y: float) -> None:
         """Take down the pile beside a loose block, one by one, until the block itself can be set aside."""
-        near = [name for name, slot in self.performer.slots.items() if slot.distance(x, y) < NEAR]
-        for location in sorted(near, key=lambda name: self.performer.slots[name].distance(x, y)):
+        near = [name for name, slot in self.performer.table.slots.items() if slot.distance(x, y) < NEAR]
+        for location in sorted(near, key=lambda name: self.performer.table.slots[name].distance(x, y)):
             for _ in range(len(self.performer.observe().piles[location])):
                 pile = self.performer.observe().piles[location]
                 if not pile or not self._set_aside(pile[-1], location):

@@ -1,4 +1,4 @@
-"""What the robot must not touch: boxes with names, as arrays, and the block that it carries."""
+"""What the robot must not touch: boxes with names, as arrays, and what it carries."""
 
 from __future__ import annotations
 
@@ -8,10 +8,31 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from smash.execution.poses import Matrix, Vector
+from smash.execution.poses import ToolPose
 
 FIXTURE = None
-"""The name of a box that is no block, the table say: any string may be a block's name."""
+"""The name of a box that never moves, the table say: any string may be a block's name."""
+
+
+@dataclass(frozen=True, slots=True)
+class CarrierBody:
+    """What a box of a carrier is called in a scene: a block may have the carrier's name."""
+
+    name: str
+
+
+BodyName = str | CarrierBody | None
+"""A block's name, a carrier's, or `FIXTURE`."""
+
+
+def in_words(name: BodyName) -> str:
+    """The body of this name, for messages."""
+    match name:
+        case str():
+            return f"block {name!r}"
+        case CarrierBody(carrier):
+            return f"carrier {carrier!r}"
+    return "the table"
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,20 +40,20 @@ class Scene:
     """Oriented boxes in the world.
 
     Attributes:
-        names: Name of each box's block, or `FIXTURE`, length N.
+        names: Whose box each is, length N; a carrier has several.
         centres: Box centres [m], shape (N, 3).
         half_extents: Half side lengths [m], shape (N, 3).
         rotations: Box axes as columns, shape (N, 3, 3).
     """
 
-    names: tuple[str | None, ...]
+    names: tuple[BodyName, ...]
     centres: NDArray[np.float64]
     half_extents: NDArray[np.float64]
     rotations: NDArray[np.float64]
 
     @staticmethod
     def of_boxes(
-        names: Sequence[str | None],
+        names: Sequence[BodyName],
         centres: ArrayLike,
         half_extents: ArrayLike,
         rotations: ArrayLike | None = None,
@@ -74,34 +95,46 @@ class Scene:
         """The scene without a box."""
         return Scene((), self.centres[:0], self.half_extents[:0], self.rotations[:0])
 
-    def without(self, names: Iterable[str]) -> Scene:
-        """The scene less the boxes of these names (toppled blocks, the block to grasp)."""
+    def without(self, names: Iterable[BodyName]) -> Scene:
+        """The scene less the boxes of these names (toppled blocks, the block to grasp, a carrier)."""
         left_out = set(names)
-        keep = np.array([name is FIXTURE or name not in left_out for name in self.names], dtype=bool)
+        return self._kept([name is FIXTURE or name not in left_out for name in self.names])
+
+    def only_of(self, names: Iterable[BodyName]) -> Scene:
+        """The boxes of these names."""
+        wanted = set(names)
+        return self._kept([name in wanted for name in self.names])
+
+    def _kept(self, which: Sequence[bool]) -> Scene:
+        keep = np.array(which, dtype=bool)
         kept_names = tuple(name for name, kept in zip(self.names, keep, strict=True) if kept)
         return Scene(kept_names, self.centres[keep], self.half_extents[keep], self.rotations[keep])
 
 
 @dataclass(frozen=True, eq=False)
 class Attached:
-    """A block held between the fingers, a box fixed in the tool frame.
+    """What the fingers hold, and what stands on it: boxes fixed in the tool frame.
 
     Attributes:
-        name: The block's name.
-        half_extents: [m], shape (3,).
-        translation: Box centre in the tool frame [m], shape (3,).
-        rotation: Box axes in the tool frame as columns, shape (3, 3).
+        half_extents: [m], shape (K, 3).
+        translations: Box centres in the tool frame [m], shape (K, 3).
+        rotations: Box axes in the tool frame as columns, shape (K, 3, 3).
     """
 
-    name: str
-    half_extents: Vector
-    translation: Vector
-    rotation: Matrix
+    half_extents: NDArray[np.float64]
+    translations: NDArray[np.float64]
+    rotations: NDArray[np.float64]
 
     @staticmethod
-    def cube(name: str, side: float) -> Attached:
+    def cube(side: float) -> Attached:
         """A cube of `side` [m] held at its centre, its faces along the tool's axes."""
-        return Attached(name, np.full(3, side / 2), np.zeros(3), np.eye(3))
+        return Attached(np.full((1, 3), side / 2), np.zeros((1, 3)), np.eye(3)[None])
+
+    @staticmethod
+    def of_scene(bodies: Scene, tool: ToolPose) -> Attached:
+        """The boxes of a scene as they are when the tool is at `tool`."""
+        turned = tool.rotation.T
+        return Attached(bodies.half_extents, (bodies.centres - tool.position) @ turned.T, turned @ bodies.rotations)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +143,7 @@ class HandState:
 
     Attributes:
         opening: Travel of each finger from the middle [m], 0 (closed) to 0.04.
-        attached: The block in the hand, or none.
+        attached: What the hand holds, or nothing.
     """
 
     opening: float = 0.0

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import os
 import tomllib
+from dataclasses import replace
 from functools import cache
-from math import radians
+from math import hypot, radians
 from pathlib import Path
 from typing import Annotated, Any, Literal, cast
 
 import msgspec
 
 from smash.execution.tabletop import DIRECTIONS, Friction, Slot, Tabletop
+from smash.execution.tray import Tray
 from smash.problem.errors import MalformedFile
 from smash.problem.files import check_format, convert, parse_json, read_bytes
 
@@ -47,6 +49,15 @@ class _StackFile(_BufferFile, forbid_unknown_fields=True):
     topple: list[Literal["counter-clockwise", "clockwise", "outward", "inward"]]
 
 
+class _TrayFile(msgspec.Struct, forbid_unknown_fields=True):
+    rows: Annotated[int, msgspec.Meta(ge=1, le=4)] = 1
+    board: Annotated[float, msgspec.Meta(ge=0.004, le=0.03)] = 0.010
+    rim: Annotated[float, msgspec.Meta(ge=0.0, le=0.008)] = 0.006
+    post: Annotated[float, msgspec.Meta(ge=0.01, le=0.05)] = 0.022
+    mass: Annotated[float, msgspec.Meta(gt=0.0, le=1.0)] = 0.25
+    friction: _Coefficient = 0.9
+
+
 class _SceneFile(msgspec.Struct, forbid_unknown_fields=True):
     format: Literal["smash-scene/1"]
     name: str
@@ -55,6 +66,8 @@ class _SceneFile(msgspec.Struct, forbid_unknown_fields=True):
     friction: _FrictionFile = msgspec.field(default_factory=_FrictionFile)
     speed: _SpeedFile = msgspec.field(default_factory=_SpeedFile)
     buffers: list[_BufferFile] = []
+    tray: _TrayFile = msgspec.field(default_factory=_TrayFile)
+    stations: list[_BufferFile] = []
 
 
 def read_scene(path: str | os.PathLike[str]) -> Tabletop:
@@ -97,6 +110,9 @@ def scene_from_document(document: Any, where: str = "scene") -> Tabletop:
         stacks=tuple(Slot(s.radius, radians(s.angle), tuple(s.topple)) for s in file.stacks),
         buffers=tuple(Slot(b.radius, radians(b.angle)) for b in file.buffers),
     )
+    if file.stations:
+        tray, stations = Tray(file.block.side, **msgspec.to_builtins(file.tray)), file.stations
+        table = replace(table, tray=tray, stations=tuple(Slot(s.radius, radians(s.angle)) for s in stations))
     _refuse_overlap(table, where)
     return table
 
@@ -114,12 +130,14 @@ def _parse(content: bytes, where: str) -> Any:
 
 def _refuse_overlap(table: Tabletop, where: str) -> None:
     """Two piles that touch are no layout; whether they stand far enough apart is `conditions`' question."""
-    slots = table.slots
-    names = [f"stacks[{i}]" for i in range(len(table.stacks))] + [f"buffers[{i}]" for i in range(len(table.buffers))]
-    for first, slot in enumerate(slots):
-        for second in range(first + 1, len(slots)):
-            apart = slot.distance(slots[second].x, slots[second].y)
-            if apart < 1.5 * table.side:
-                least = 1.5 * table.side
-                problem = f"stands {apart:.3f} m from {names[first]}; {least:.3f} or more is allowed"
-                raise MalformedFile(where, f"`{names[second]}`: {problem}")
+    groups = {"stacks": table.stacks, "buffers": table.buffers, "stations": table.stations}
+    named = [(f"{group}[{index}]", slot) for group, slots in groups.items() for index, slot in enumerate(slots)]
+    reach = 0.0 if table.tray is None else hypot(*table.tray.size) / 2
+    for first, (other, there) in enumerate(named):
+        for name, slot in named[first + 1 :]:
+            trays = name.startswith("stations") + other.startswith("stations")
+            least = trays * reach + 0.75 * table.side * (2 - trays)
+            apart = slot.distance(there.x, there.y)
+            if apart < least:
+                problem = f"stands {apart:.3f} m from {other}; {least:.3f} or more is allowed"
+                raise MalformedFile(where, f"`{name}`: {problem}")

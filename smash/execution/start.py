@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from math import hypot
 
 import numpy as np
@@ -25,8 +25,17 @@ REGION_APART = 2.0
 """... and so many sides apart."""
 
 
+def starting_carriers(instance: Instance, stations: Mapping[str, Slot], tabletop: Tabletop) -> dict[str, BlockPose]:
+    """Poses of the carriers: each stands exactly at its station."""
+    return {carrier.name: tabletop.tray_at(stations[carrier.at]) for carrier in instance.carriers}
+
+
 def starting_poses(
-    instance: Instance, slots: Mapping[str, Slot], tabletop: Tabletop, generator: np.random.Generator
+    instance: Instance,
+    slots: Mapping[str, Slot],
+    tabletop: Tabletop,
+    generator: np.random.Generator,
+    carriers: Mapping[str, BlockPose] | None = None,
 ) -> dict[str, BlockPose]:
     """Poses of all blocks, in the order of `instance.blocks`.
 
@@ -39,17 +48,23 @@ def starting_poses(
         for level, block in enumerate(instance.start.get(location, ())):
             dx, dy, turn = np.clip(generator.normal(size=3), -LARGEST, LARGEST) * (JITTER, JITTER, TURN)
             poses[block] = standing(slot.x + dx, slot.y + dy, (level + 0.5) * side, slot.angle + turn)
+    for carrier in instance.carriers:
+        assert tabletop.tray is not None
+        for cell, block in enumerate(carrier.holds):
+            poses[block] = tabletop.tray.cell((carriers or {})[carrier.name], cell)
+    taken = [*poses.values(), *(carriers or {}).values()]
     for block in instance.table:
-        poses[block] = _in_region(tabletop, slots, poses, generator)
+        poses[block] = _in_region(tabletop, slots, taken, generator)
+        taken.append(poses[block])
     return {block: poses[block] for block in instance.blocks}
 
 
 def _in_region(
-    tabletop: Tabletop, slots: Mapping[str, Slot], poses: Mapping[str, BlockPose], generator: np.random.Generator
+    tabletop: Tabletop, slots: Mapping[str, Slot], poses: Iterable[BlockPose], generator: np.random.Generator
 ) -> BlockPose:
     """A free place in the landing strips of the scene's stacks."""
     side = tabletop.side
-    taken = [(float(pose.position[0]), float(pose.position[1])) for pose in poses.values()]
+    taken = [(float(pose.position[0]), float(pose.position[1])) for pose in poses]
     taken += [(slot.x, slot.y) for slot in slots.values()]
     for _ in range(2000):
         slot = tabletop.stacks[int(generator.integers(len(tabletop.stacks)))]

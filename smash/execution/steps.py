@@ -20,9 +20,10 @@ from smash.execution.motion import MotionPlanner
 from smash.execution.paths import Path
 from smash.execution.poses import Vector, top_down
 from smash.execution.robot import MAX_OPENING, READY
-from smash.execution.scene import Attached, HandState, Scene
-from smash.execution.tabletop import Slot
+from smash.execution.scene import Attached, BodyName, HandState, Scene
+from smash.execution.tabletop import Tabletop
 from smash.execution.timing import Pace, Trajectory, time_path
+from smash.execution.tray import Tray
 
 OPENINGS = (0.010, 0.005)
 """Room between a finger and the block before it is grasped [m], the wide one first."""
@@ -48,15 +49,15 @@ class Move:
     Attributes:
         path: Where.
         trajectory: When.
-        hand: Fingers and carried block meanwhile.
-        ignored: Blocks that it may touch.
+        hand: Fingers and what they hold meanwhile.
+        ignored: Blocks and carriers that it may touch.
         margin: Distance that it was planned to keep [m].
     """
 
     path: Path
     trajectory: Trajectory
     hand: HandState
-    ignored: frozenset[str]
+    ignored: frozenset[BodyName]
     margin: float
 
     @property
@@ -100,15 +101,16 @@ class Steps:
     """Plans the motions of single actions.
 
     Args:
-        side: Side of a block [m].
-        pace: Share of the arm's limits that motions use.
+        tabletop: Blocks, trays, and the share of the arm's limits that motions use.
         seed: Of the motion planner.
     """
 
-    def __init__(self, side: float, pace: Pace, seed: int = 0) -> None:
-        self.side = side
-        self.pace = pace
+    def __init__(self, tabletop: Tabletop, seed: int = 0) -> None:
+        self.tabletop = tabletop
+        self.side = tabletop.side
+        self.pace = Pace(tabletop.velocity, tabletop.acceleration)
         self.motion = MotionPlanner(seed=seed)
+        self.holding = HandState(self.side / 2, Attached.cube(self.side))
 
     def warm_up(self) -> None:
         """Load and compile what motion planning uses, so that the first action's time is not theirs."""
@@ -118,16 +120,21 @@ class Steps:
         self.move(self.motion.line(READY, (0.0, 0.0, 0.05), bare), HandState(0.0))
         importlib.import_module("smash.execution.tree")
 
-    def scene(self, poses: Mapping[str, BlockPose]) -> Scene:
-        """Blocks and table as the motion planner sees them."""
-        names = list(poses)
-        centres = np.array([poses[name].position for name in names]).reshape(-1, 3)
-        rotations = np.array([poses[name].rotation for name in names]).reshape(-1, 3, 3)
-        return Scene.of_boxes(names, centres, self.side / 2, rotations).with_table()
+    def scene(self, blocks: Mapping[str, BlockPose], carriers: Mapping[str, BlockPose] | None = None) -> Scene:
+        """Blocks, carriers and table as the motion planner sees them."""
+        names = list(blocks)
+        centres = np.array([blocks[name].position for name in names]).reshape(-1, 3)
+        rotations = np.array([blocks[name].rotation for name in names]).reshape(-1, 3, 3)
+        scene = Scene.of_boxes(names, centres, self.side / 2, rotations)
+        for name, pose in (carriers or {}).items():
+            scene = scene.joined(self.tray.scene(name, pose))
+        return scene.with_table()
 
-    def held(self, block: str) -> HandState:
-        """The hand with `block` between the fingers."""
-        return HandState(self.side / 2, Attached.cube(block, self.side))
+    @property
+    def tray(self) -> Tray:
+        """What carriers are in this scene."""
+        assert self.tabletop.tray is not None, "a scene without a tray is bound to no instance with carriers"
+        return self.tabletop.tray
 
     def pick(self, start: Vector, block: str, pose: BlockPose, scene: Scene) -> list[Segment]:
         """From `start` [rad] to above the block, down, close, and up again.
@@ -137,7 +144,7 @@ class Steps:
         """
         yaws = [pose.yaw + turn * QUARTER for turn in range(4)]
         near = scene.without([block])
-        approaches = self._approaches(start, pose.position, yaws, near, self._openings(), carried=None)
+        approaches = self._approaches(start, pose.position, yaws, near, self._openings(), carrying=False)
         problem: ExecutionFailure | None = None
         for approach in approaches:
             open_hand = HandState(approach.opening)
@@ -146,27 +153,28 @@ class Steps:
             except NoMotion as failure:
                 problem = problem or failure
                 continue
-            touched = frozenset([block])
+            touched: frozenset[BodyName] = frozenset([block])
             return [
                 *transfer,
                 self.move(approach.line, open_hand, touched, CONTACT_MARGIN),
                 Grip(0.0, CLOSE_SECONDS),
-                self.move(approach.line.reversed(), self.held(block), touched, CONTACT_MARGIN),
+                self.move(approach.line.reversed(), self.holding, touched, CONTACT_MARGIN),
             ]
         raise problem or NoMotion(f"no room for the hand around block {block!r}")
 
-    def landing(self, start: Vector, block: str, slot: Slot, level: int, scene: Scene) -> Approach:
-        """The way down to the `level`-th place of a slot (1 is the bottom), carrying `block`.
+    def landing(self, start: Vector, block: str, target: BlockPose, scene: Scene) -> Approach:
+        """The way down to where `block`, which is in the hand, shall stand.
 
         Raises:
             NoIk, NoMotion: where there is none.
         """
-        target = np.array([slot.x, slot.y, (level - 0.5) * self.side + RELEASE_HEIGHT])
-        yaws = [slot.angle + turn * QUARTER for turn in range(4)]
+        point = target.position + np.array([0.0, 0.0, RELEASE_HEIGHT])
+        yaws = [target.yaw + turn * QUARTER for turn in range(4)]
         near = scene.without([block])
-        for approach in self._approaches(start, target, yaws, near, self._openings(), carried=block):
+        for approach in self._approaches(start, point, yaws, near, self._openings(), carrying=True):
             return approach
-        raise NoMotion(f"no room for the hand at height {level} of the place at x {slot.x:.2f}, y {slot.y:.2f} m")
+        x, y, z = (float(value) for value in target.position)
+        raise NoMotion(f"no room for the hand to put a block down at x {x:.2f}, y {y:.2f}, z {z:.2f} m")
 
     def place(self, start: Vector, block: str, approach: Approach, scene: Scene) -> list[Segment]:
         """From `start` [rad] with the block to above the place, down, open, and up again.
@@ -174,16 +182,16 @@ class Steps:
         Raises:
             NoMotion: where the way there is blocked.
         """
-        carrying, touched = self.held(block), frozenset([block])
+        touched: frozenset[BodyName] = frozenset([block])
         return [
-            *self.transfer(start, approach.line.start, scene, carrying, touched),
-            self.move(approach.line, carrying, touched, CONTACT_MARGIN),
+            *self.transfer(start, approach.line.start, scene, self.holding, touched),
+            self.move(approach.line, self.holding, touched, CONTACT_MARGIN),
             Grip(approach.opening, OPEN_SECONDS),
             self.move(approach.line.reversed(), HandState(approach.opening), touched, CONTACT_MARGIN),
         ]
 
     def transfer(
-        self, start: Vector, goal: Vector, scene: Scene, hand: HandState, ignored: frozenset[str] = frozenset()
+        self, start: Vector, goal: Vector, scene: Scene, hand: HandState, ignored: frozenset[BodyName] = frozenset()
     ) -> list[Move]:
         """A free motion between configurations [rad], shape (7,); closer to blocks where it must be.
 
@@ -223,7 +231,7 @@ class Steps:
         yaws: Sequence[float],
         near: Scene,
         openings: Iterable[float],
-        carried: str | None,
+        carrying: bool,
     ) -> Iterable[Approach]:
         """Ways down to a point, those with most room first; equal ones by how near they are to `start`.
 
@@ -248,7 +256,7 @@ class Steps:
         for height in HOVERS:
             for _, negative, _, clearance, joints in ranked:
                 leaving = HandState(-negative)
-                going = leaving if carried is None else self.held(carried)
+                going = self.holding if carrying else leaving
                 line = self._line_down(joints, height, near, going, leaving)
                 if line is not None:
                     yield Approach(line, -negative, clearance)
@@ -269,7 +277,7 @@ class Steps:
         self,
         path: Path,
         hand: HandState,
-        ignored: frozenset[str] = frozenset(),
+        ignored: frozenset[BodyName] = frozenset(),
         margin: float = DEFAULT_MARGIN,
         pace: Pace | None = None,
     ) -> Move:

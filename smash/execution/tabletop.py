@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import atan2, cos, hypot, pi, sin
 
+from smash.execution.block_pose import QUARTER, BlockPose
+from smash.execution.tray import Tray
 from smash.problem.errors import SmashError
 from smash.problem.model import Instance
 
@@ -98,6 +100,8 @@ class Tabletop:
         acceleration: Share of its acceleration limits.
         stacks: Slots of `stacks` locations, each with its topple directions.
         buffers: Slots of buffers.
+        tray: What carriers are; none in a scene without stations.
+        stations: Slots that trays can stand at, their length across the bearing.
     """
 
     name: str
@@ -108,6 +112,8 @@ class Tabletop:
     acceleration: float
     stacks: tuple[Slot, ...]
     buffers: tuple[Slot, ...]
+    tray: Tray | None = None
+    stations: tuple[Slot, ...] = ()
 
     @property
     def slots(self) -> tuple[Slot, ...]:
@@ -123,12 +129,16 @@ class Tabletop:
         """Give every location of `instance` its slot, in order.
 
         Raises:
-            DoesNotFit: where the instance has more stacks, buffers or blocks than the scene has room for.
+            DoesNotFit: where the instance has more stacks, buffers, stations or blocks, or larger carriers, than the
+                scene has room for.
         """
+        cells = 0 if self.tray is None else self.tray.capacity
         for what, wanted, room in (
             ("stacks", len(instance.stacks), len(self.stacks)),
             ("buffers", len(instance.buffers), len(self.buffers)),
             ("blocks", len(instance.blocks), self.highest),
+            ("stations", len(stations_of(instance)), len(self.stations)),
+            ("places on a carrier", max((c.capacity for c in instance.carriers), default=0), cells),
         ):
             if wanted > room:
                 raise DoesNotFit(
@@ -138,6 +148,20 @@ class Tabletop:
             **dict(zip(instance.stacks, self.stacks, strict=False)),
             **dict(zip(instance.buffers, self.buffers, strict=False)),
         }
+
+    def bind_stations(self, instance: Instance) -> dict[str, Slot]:
+        """Give every station of the carriers of an instance that `bind` has accepted its slot, in order."""
+        return dict(zip(stations_of(instance), self.stations, strict=False))
+
+    def tray_at(self, station: Slot) -> BlockPose:
+        """The pose of a tray that stands at a station: its length across the bearing."""
+        assert self.tray is not None, "a scene without a tray is bound to no instance with carriers"
+        return self.tray.at(station.x, station.y, station.angle + QUARTER)
+
+
+def stations_of(instance: Instance) -> tuple[str, ...]:
+    """The stations of all carriers, in the instance's order, each once."""
+    return tuple(dict.fromkeys(station for carrier in instance.carriers for station in carrier.stations))
 
 
 def bearing(x: float, y: float) -> float:

@@ -128,6 +128,36 @@ def trapezoid(begin: NDArray[np.float64], end: NDArray[np.float64], pace: Pace =
     return Trajectory(times, begin + part[:, None] * displacement, rate[:, None] * displacement)
 
 
+def time_gently(path: Path, length: float, speed: float, acceleration: float) -> Trajectory:
+    """A trapezoid for a path whose waypoints are evenly spaced in the world: what is carried is hardly shaken.
+
+    Args:
+        path: Where; between two neighbouring waypoints a point of what is carried moves the same way.
+        length: Of that point's way [m].
+        speed: Its greatest speed [m/s].
+        acceleration: Its greatest acceleration along the way [m/s2].
+    """
+    from scipy.interpolate import CubicSpline
+
+    waypoints = path.waypoints
+    tangent = np.gradient(waypoints, 1.0 / (len(waypoints) - 1), axis=0)
+    steepest = np.maximum(np.abs(tangent).max(axis=0), 1e-12)
+    fastest = min(speed / length, float(np.min(VELOCITY / steepest)))
+    rise = acceleration / length
+    rate = min(fastest, float(np.sqrt(rise)))
+    ramp, duration = rate / rise, 1.0 / rate + rate / rise
+    times = np.append(np.arange(0.0, duration, KNOT_STEP), duration)
+    rising, falling = np.minimum(times, ramp), np.maximum(times - (duration - ramp), 0.0)
+    part = rate * (np.clip(times - ramp, 0.0, duration - 2 * ramp) + falling) + 0.5 * rise * (rising**2 - falling**2)
+    part = np.clip(part, 0.0, 1.0)
+    part[-1] = 1.0
+    at = np.linspace(0.0, 1.0, len(waypoints))
+    spline = CubicSpline(at, waypoints)
+    positions, velocities = spline(part), spline(part, 1) * (rise * (rising - falling))[:, None]
+    positions[-1], velocities[-1] = waypoints[-1], 0.0
+    return Trajectory(times, positions, velocities)
+
+
 def _toppra(waypoints: Waypoints, pace: Pace) -> Trajectory:
     # toppra loads a plotting library: a second that `smash plan` must not pay.
     import toppra

@@ -13,6 +13,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from smash.execution.aggregate_motion import Geometry
 from smash.execution.block_pose import BlockPose
 from smash.execution.episode import Performed
 from smash.execution.errors import ExecutionFailure
@@ -25,7 +26,6 @@ from smash.execution.robot import READY
 from smash.execution.start import starting_poses
 from smash.execution.steps import Steps
 from smash.execution.tabletop import Tabletop
-from smash.execution.timing import Pace
 from smash.execution.world import World
 from smash.problem.files import make_instance
 from smash.problem.model import PositionsGoal
@@ -90,13 +90,13 @@ def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: i
     )
     slots = {location: slot}
     poses = starting_poses(instance, slots, tabletop, np.random.default_rng(seed))
-    steps = Steps(tabletop.side, Pace(tabletop.velocity, tabletop.acceleration), seed)
+    steps = Steps(tabletop, seed)
     action = Topple(location, height)
     blank = Trial(scene=tabletop.name, stack=stack, height=height, falling=falling, seed=seed)
     with World(tabletop, poses, READY) as world:
         world.settle()
         before = world.poses()
-        performer = Performer(world, Grounder(steps, slots), slots, OPEN)
+        performer = Performer(world, Grounder(steps), Geometry(slots), OPEN)
         try:
             performer.perform(Task(action, None), Performed(step=1, action=[], origin="plan"), performer.observe())
         except ExecutionFailure as failure:
@@ -106,7 +106,7 @@ def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: i
     return msgspec.structs.replace(
         blank,
         moved=max((float(np.linalg.norm(after[b].position - before[b].position)) for b in lower), default=0.0),
-        stands=read_state(after, slots, tabletop.side).piles[location] == lower,
+        stands=read_state(Geometry(slots, blocks=after), tabletop).piles[location] == lower,
         landings=tuple(
             _landing(steps, tabletop, stack, names.index(b) + 1, b, after, arm) for b in names[height - 1 :]
         ),

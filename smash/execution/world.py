@@ -52,6 +52,7 @@ class World:
         blocks: Mapping[str, BlockPose],
         ready: NDArray[np.float64],
         *,
+        carriers: Mapping[str, BlockPose] | None = None,
         gui: bool = False,
         on_frame: Frame | None = None,
         frame_interval: float = 1 / 25,
@@ -68,6 +69,7 @@ class World:
         self.client: Any = connect(gui)
         try:
             self._set_up(blocks)
+            self.trays = {name: self._add_tray(pose) for name, pose in (carriers or {}).items()}
         except BaseException:
             self.close()
             raise
@@ -123,6 +125,18 @@ class World:
         self._send_arm = partial(c.setJointMotorControlArray, self.robot, ARM, c.POSITION_CONTROL, forces=ARM_FORCE)
         self._hold()
         self._send_fingers()
+
+    def _add_tray(self, pose: BlockPose) -> int:
+        """One body of several boxes; its frame, the middle of the board, is its centre of mass."""
+        c, tray = self.client, self.tabletop.tray
+        assert tray is not None
+        centres, half = (array.tolist() for array in tray.boxes)
+        shape = c.createCollisionShapeArray(
+            shapeTypes=[c.GEOM_BOX] * len(half), halfExtents=half, collisionFramePositions=centres
+        )
+        body: int = c.createMultiBody(tray.mass, shape, -1, pose.position.tolist(), quaternion_of(pose.rotation))
+        c.changeDynamics(body, -1, lateralFriction=tray.friction)
+        return body
 
     def _couple_fingers(self) -> None:
         """Let the fingers move as one: apart, they drift sideways together with the block that they squeeze."""
@@ -191,8 +205,8 @@ class World:
         return False
 
     def still(self) -> bool:
-        """Whether every block is at rest."""
-        for body in self.bodies.values():
+        """Whether every block and tray is at rest."""
+        for body in (*self.bodies.values(), *self.trays.values()):
             linear, angular = self.client.getBaseVelocity(body)
             if np.linalg.norm(linear) > STILL_LINEAR or np.linalg.norm(angular) > STILL_ANGULAR:
                 return False
@@ -200,13 +214,20 @@ class World:
 
     def pose(self, block: str) -> BlockPose:
         """Pose of a block."""
-        position, quaternion = self.client.getBasePositionAndOrientation(self.bodies[block])
-        rotation = np.array(self.client.getMatrixFromQuaternion(quaternion)).reshape(3, 3)
-        return BlockPose(np.array(position), rotation)
+        return self._pose_of(self.bodies[block])
 
     def poses(self) -> dict[str, BlockPose]:
         """Poses of all blocks."""
-        return {name: self.pose(name) for name in self.bodies}
+        return {name: self._pose_of(body) for name, body in self.bodies.items()}
+
+    def carriers(self) -> dict[str, BlockPose]:
+        """Poses of all carriers."""
+        return {name: self._pose_of(body) for name, body in self.trays.items()}
+
+    def _pose_of(self, body: int) -> BlockPose:
+        position, quaternion = self.client.getBasePositionAndOrientation(body)
+        rotation = np.array(self.client.getMatrixFromQuaternion(quaternion)).reshape(3, 3)
+        return BlockPose(np.array(position), rotation)
 
     def joints(self) -> NDArray[np.float64]:
         """Measured arm joints [rad], shape (7,)."""

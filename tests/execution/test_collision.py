@@ -15,7 +15,7 @@ from smash.execution.scene import Attached, HandState, Scene
 from tests.execution.towers import SIDE, tower_scene
 
 TOWERS = tower_scene({-1.7: 4, -0.5: 5, 0.7: 9})
-HAND = HandState(SIDE / 2, Attached.cube("held", SIDE))
+HAND = HandState(SIDE / 2, Attached.cube(SIDE))
 
 
 def configurations(count, seed):

@@ -52,7 +52,7 @@ def test_the_fingers_reach_around_the_block_to_grasp_and_lift_it_away():
     planner = MotionPlanner()
     reach = planner.reach(READY, [pose], scene, hand=OPEN, contact_scene=scene.without([block]))
     assert np.allclose(panda().forward(reach.approach.end).position, pose.position, atol=1e-4)
-    held = HandState(SIDE / 2, Attached.cube(block, SIDE))
+    held = HandState(SIDE / 2, Attached.cube(SIDE))
     lift = planner.line(reach.approach.end, (0.0, 0.0, 0.1), scene.without([block]), hand=held)
     place = top_down([0.45 * np.cos(0.7), 0.45 * np.sin(0.7), SIDE * 1.5], 0.7)
     set_down = planner.reach(lift.end, [place], scene.without([block]), hand=held)

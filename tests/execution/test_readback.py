@@ -4,6 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from smash.execution.aggregate_motion import Geometry
 from smash.execution.block_pose import BlockPose, quarter_turn, standing
 from smash.execution.readback import read_state
 from smash.execution.scene_file import default_scene
@@ -17,34 +18,38 @@ def pile(location, *blocks, dx=0.0):
     return {b: standing(slot.x + dx, slot.y, (level + 0.5) * SIDE, slot.angle) for level, b in enumerate(blocks)}
 
 
+def read(poses, hand=None):
+    return read_state(Geometry(SLOTS, blocks=poses), default_scene(), hand)
+
+
 def test_blocks_on_each_other_are_a_pile():
-    state = read_state({**pile("s2", "b", "a"), **pile("s1", "c")}, SLOTS, SIDE)
+    state = read({**pile("s2", "b", "a"), **pile("s1", "c")})
     assert state.piles == {"s1": ["c"], "s2": ["b", "a"], "s3": []}
     assert not state.table
 
 
 def test_a_block_beside_its_location_lies_in_the_table_region():
-    state = read_state(pile("s1", "a", dx=0.02), SLOTS, SIDE)
+    state = read(pile("s1", "a", dx=0.02))
     assert state.table == {"a"}
 
 
 def test_a_leaning_block_stands_nowhere():
     slot = SLOTS["s1"]
     leaning = np.array([[1, 0, 0], [0, cos(0.3), -sin(0.3)], [0, sin(0.3), cos(0.3)]])
-    state = read_state({"a": BlockPose(np.array([slot.x, slot.y, SIDE / 2]), leaning)}, SLOTS, SIDE)
+    state = read({"a": BlockPose(np.array([slot.x, slot.y, SIDE / 2]), leaning)})
     assert state.table == {"a"}
 
 
 def test_what_stands_on_a_missing_block_is_no_pile():
     poses = pile("s1", "a", "b", "c")
     poses["b"] = standing(0.3, 0.3, SIDE / 2, 0.0)
-    state = read_state(poses, SLOTS, SIDE)
+    state = read(poses)
     assert state.piles["s1"] == ["a"]
     assert state.table == {"b", "c"}
 
 
 def test_the_held_block_stands_nowhere():
-    state = read_state(pile("s1", "a", "b"), SLOTS, SIDE, hand="b")
+    state = read(pile("s1", "a", "b"), hand="b")
     assert state.piles["s1"] == ["a"]
     assert state.hand == "b"
     assert not state.table
@@ -58,7 +63,7 @@ def test_any_arrangement_with_small_errors_is_read_back(order, first, second, er
     poses = {}
     for location, blocks in piles.items():
         poses.update(pile(location, *blocks, dx=error))
-    state = read_state(dict(sorted(poses.items())), SLOTS, SIDE)
+    state = read(dict(sorted(poses.items())))
     assert state.piles == {location: list(blocks) for location, blocks in piles.items()}
 
 
