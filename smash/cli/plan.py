@@ -28,6 +28,11 @@ from smash.problem.model import Action
 @click.option("--planner", default=DEFAULT, show_default=True, metavar="NAME", help="See `smash planners`.")
 @click.option("--no-topple", is_flag=True, help="Pick and place only.")
 @click.option("--max-topple", type=click.IntRange(min=1), metavar="M", help="At most M blocks in one topple.")
+@click.option(
+    "--estimates",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Topple no more blocks at once than went well in `smash topple-map`, whose estimates.json this is.",
+)
 @without_option
 @click.option(
     "--budget",
@@ -55,6 +60,7 @@ def command(
     planner: str,
     no_topple: bool,
     max_topple: int | None,
+    estimates: Path | None,
     without: tuple[str, ...],
     budget: float,
     memory: int,
@@ -72,8 +78,12 @@ def command(
     Examples:
       smash plan examples/figure1.json
       smash plan examples/figure1.json --no-topple --planner precedence --out plan.json
+      smash plan examples/figure1.json --estimates runs/topple-map/estimates.json
     """
-    options = SolveOptions(not no_topple, max_topple, warm_start, horizon, threads, seed, without=without)
+    if estimates is not None:
+        max_topple = _trusted(estimates, max_topple)
+        no_topple = no_topple or max_topple == 0
+    options = SolveOptions(not no_topple, max_topple or None, warm_start, horizon, threads, seed, without=without)
     job = Job(planner, read_instance(instance), options, budget, memory)
     if math.isnan(budget):
         raise click.BadParameter("nan is no number of seconds", param_hint="--budget")
@@ -83,6 +93,14 @@ def command(
         report = run_isolated(job, tell, stop)
     _write(report, job, out)
     _end(report, f"{instance}: planner {planner!r}", budget)
+
+
+def _trusted(estimates: Path, max_topple: int | None) -> int:
+    """The largest topple that execution can be trusted with, and that is asked for; 0 for none."""
+    from smash.execution.estimates import read_estimates
+
+    trusted = read_estimates(estimates).trusted_size()
+    return trusted if max_topple is None else min(trusted, max_topple)
 
 
 def _write(report: Report, job: Job, out: Path | None) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import click
@@ -29,8 +28,9 @@ def command(highest_cut: int, most: int, seeds: int, scene: Path | None, out: Pa
     """
     import msgspec
 
+    from smash.execution.estimates import write_estimates
     from smash.execution.scene_file import default_scene, read_scene
-    from smash.execution.topple_map import Trial, draw, estimates, run_trial, suggested_cap
+    from smash.execution.topple_map import Trial, draw, estimates, run_trial
 
     tabletop = default_scene() if scene is None else read_scene(scene)
     out.mkdir(parents=True, exist_ok=True)
@@ -54,12 +54,7 @@ def command(highest_cut: int, most: int, seeds: int, scene: Path | None, out: Pa
             words = "success" if trial.success else trial.problem or "failure"
             click.echo(f"[{number}/{len(wanted)}] cut {trial.height}, {trial.falling} falling: {words}", err=True)
     chosen = [trials[key] for key in wanted]
-    counts = {
-        str(h): {str(f): {"successes": s, "trials": t} for f, (s, t) in by.items()}
-        for h, by in estimates(chosen).items()
-    }
-    cap = suggested_cap(chosen)
-    document = {"scene": tabletop.name, "by_cut_and_size": counts, "suggested_max_topple": cap}
-    (out / "estimates.json").write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+    found = estimates(tabletop.name, chosen)
+    write_estimates(found, out / "estimates.json")
     draw(chosen, out / "map.png")
-    click.echo(f"{len(chosen)} trials in {out}; suggested --max-topple {cap}")
+    click.echo(f"{len(chosen)} trials in {out}; suggested --max-topple {found.suggested_max_topple}")

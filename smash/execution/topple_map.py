@@ -17,6 +17,7 @@ from smash.execution.aggregate_motion import Geometry
 from smash.execution.block_pose import BlockPose
 from smash.execution.episode import Performed
 from smash.execution.errors import ExecutionFailure
+from smash.execution.estimates import Estimates, Rate
 from smash.execution.grounding import Grounder, Task
 from smash.execution.performing import Performer
 from smash.execution.policy import OPEN
@@ -32,8 +33,6 @@ from smash.problem.model import PositionsGoal
 from smash.problem.topple import Topple
 
 TRIAL_FORMAT = "smash-topple-trial/1"
-TRUSTED = 0.9
-"""A topple size is suggested as a cap where its success rate is at least this at every height tried."""
 
 
 class Landing(msgspec.Struct, frozen=True):
@@ -127,26 +126,15 @@ def _landing(
     return Landing(level, along, aside, graspable)
 
 
-def estimates(trials: Iterable[Trial]) -> dict[int, dict[int, tuple[int, int]]]:
-    """Return (successes, trials) by height of the cut and number of falling blocks."""
-    counts: dict[int, dict[int, tuple[int, int]]] = {}
+def estimates(scene: str, trials: Iterable[Trial]) -> Estimates:
+    """Success rates by height of the cut and number of falling blocks."""
+    counts: dict[int, dict[int, Rate]] = {}
     for trial in trials:
-        good, total = counts.setdefault(trial.height, {}).get(trial.falling, (0, 0))
-        counts[trial.height][trial.falling] = (good + trial.success, total + 1)
-    return counts
-
-
-def suggested_cap(trials: Sequence[Trial]) -> int:
-    """The largest topple size up to which every size succeeds in `TRUSTED` of the trials at every height; or 0."""
-    counts = estimates(trials)
-    sizes = sorted({trial.falling for trial in trials})
-    cap = 0
-    for size in sizes:
-        tried = [by_size[size] for by_size in counts.values() if size in by_size]
-        if any(good < TRUSTED * total for good, total in tried):
-            break
-        cap = size
-    return cap
+        by_size = counts.setdefault(trial.height, {})
+        known = by_size.get(trial.falling)
+        good, total = (0, 0) if known is None else (known.successes, known.trials)
+        by_size[trial.falling] = Rate(good + trial.success, total + 1)
+    return Estimates.of(scene, counts)
 
 
 def draw(trials: Sequence[Trial], path: Path) -> None:
@@ -156,7 +144,6 @@ def draw(trials: Sequence[Trial], path: Path) -> None:
     from matplotlib.patches import Rectangle
 
     heights, sizes = sorted({t.height for t in trials}), sorted({t.falling for t in trials})
-    counts = estimates(trials)
     figure = Figure(figsize=(2.1 * len(sizes) + 0.6, 1.25 * len(heights) + 1.0), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(len(heights), len(sizes), squeeze=False, sharex=True, sharey=True)
@@ -172,8 +159,7 @@ def draw(trials: Sequence[Trial], path: Path) -> None:
                 axis.scatter(
                     [100 * p.along for p in points], [100 * p.aside for p in points], s=9, c=colour, marker=marker
                 )
-            good, total = counts.get(height, {}).get(size, (0, 0))
-            axis.set_title(f"{good}/{total}" if total else "–", fontsize=8, pad=2)
+            axis.set_title(f"{sum(t.success for t in part)}/{len(part)}" if part else "–", fontsize=8, pad=2)
             axis.set_aspect("equal")
             axis.tick_params(labelsize=7)
             if column == 0:

@@ -67,3 +67,15 @@ def test_a_planner_that_gives_up_early_has_not_spent_its_budget(plan):
 def test_without_out_the_plan_is_printed(tower_file):
     command = [sys.executable, "-m", "smash", "plan", str(tower_file), "--planner", "bare"]
     assert json.loads(subprocess.run(command, capture_output=True, text=True).stdout)["cost"] == 3
+
+
+@pytest.mark.parametrize(
+    ("trusted", "arguments", "topple", "cap"),
+    [(2, [], True, 2), (2, ["--max-topple", 1], True, 1), (1, ["--max-topple", 3], True, 1), (0, [], False, None)],
+)
+def test_estimates_of_execution_cap_the_topples(plan, tmp_path, trusted, arguments, topple, cap):
+    rates = {str(size): {"successes": 9 * (size <= trusted), "trials": 9} for size in (1, 2, 3)}
+    document = {"format": "smash-topple-estimates/1", "scene": "s", "by_cut_and_size": {"1": rates}}
+    (tmp_path / "estimates.json").write_text(json.dumps(document))
+    _, written = plan("greedy", "--estimates", tmp_path / "estimates.json", *arguments)
+    assert (written["topple"], written["max_topple"]) == (topple, cap)

@@ -1,5 +1,9 @@
+import pytest
+
+from smash.execution.estimates import Rate, read_estimates, write_estimates
 from smash.execution.scene_file import default_scene
-from smash.execution.topple_map import Landing, Trial, draw, estimates, run_trial, suggested_cap
+from smash.execution.topple_map import Landing, Trial, draw, estimates, run_trial
+from smash.problem.errors import MalformedFile
 
 
 def trial(height, falling, good, seed=0):
@@ -15,16 +19,36 @@ def test_a_small_topple_succeeds_and_lands_along_the_push():
 
 
 def test_estimates_count_by_cut_and_size():
-    assert estimates([trial(1, 2, True), trial(1, 2, False, 1), trial(2, 1, True)]) == {1: {2: (1, 2)}, 2: {1: (1, 1)}}
+    found = estimates("s", [trial(1, 2, True), trial(1, 2, False, 1), trial(2, 1, True)])
+    assert found.by_cut_and_size == {"1": {"2": Rate(1, 2)}, "2": {"1": Rate(1, 1)}}
 
 
-def test_the_suggested_cap_stops_at_the_first_size_that_fails():
+def test_the_trusted_size_stops_at_the_first_that_fails():
     trials = [trial(1, 1, True), trial(2, 1, True), trial(1, 2, True), trial(2, 2, False), trial(1, 3, True)]
-    assert suggested_cap(trials) == 1
+    assert estimates("s", trials).suggested_max_topple == 1
+    assert estimates("s", trials).trusted_size(trust=0.0) == 3
 
 
-def test_no_size_is_suggested_where_the_smallest_fails():
-    assert suggested_cap([trial(1, 1, False)]) == 0
+def test_no_size_is_trusted_where_the_smallest_fails():
+    assert estimates("s", [trial(1, 1, False)]).suggested_max_topple == 0
+
+
+def test_estimates_are_read_back_as_written(tmp_path):
+    found = estimates("s", [trial(1, 10, True), trial(1, 9, True)])
+    write_estimates(found, tmp_path / "estimates.json")
+    assert read_estimates(tmp_path / "estimates.json") == found
+    assert found.suggested_max_topple == 10
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["[]", "{}", '{"format": "smash-topple-estimates/1", "scene": "s", "by_cut_and_size": {"0": {}}}'],
+)
+def test_malformed_estimates_are_refused_in_one_line(tmp_path, text):
+    (tmp_path / "e.json").write_text(text)
+    with pytest.raises(MalformedFile) as refusal:
+        read_estimates(tmp_path / "e.json")
+    assert "\n" not in str(refusal.value)
 
 
 def test_a_map_is_drawn(tmp_path):
