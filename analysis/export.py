@@ -68,10 +68,10 @@ def export(results: Path, out: Path) -> list[tuple[Path, int]]:
     import pyarrow as pa
     from pyarrow import parquet
 
-    records = [_encodable(record) for record in read_records(results)]
+    records = read_records(results)
     tables = {"runs": tidy_runs(records), "incumbents": incumbents_table(records), "steps": steps_table(records)}
     if (results / EPISODES).is_file():
-        carried_out = [_encodable(record) for record in read_lines(results / EPISODES, EPISODE_FORMAT)]
+        carried_out = read_lines(results / EPISODES, EPISODE_FORMAT)
         tables |= {"episodes": episodes_table(carried_out), "actions": actions_table(carried_out)}
     out.mkdir(parents=True, exist_ok=True)
     files = []
@@ -82,15 +82,3 @@ def export(results: Path, out: Path) -> list[tuple[Path, int]]:
         table.to_csv(out / f"{name}.csv", index=False)
         files += [(out / f"{name}.{ending}", len(table)) for ending in ("parquet", "csv")]
     return files
-
-
-def _encodable(value: Any) -> Any:
-    """Return JSON data with names that are no Unicode text (a lone surrogate, which JSON allows) escaped."""
-    match value:
-        case str():
-            return value.encode(errors="backslashreplace").decode()
-        case list():
-            return [_encodable(part) for part in value]
-        case dict():
-            return {_encodable(name): _encodable(part) for name, part in value.items()}
-    return value

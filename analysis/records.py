@@ -52,8 +52,20 @@ def read_lines(path: Path, wanted: str) -> list[dict[str, Any]]:
             if number == len(lines):
                 break
             raise NoRecords(f"{path}:{number}: no {wanted} object") from None
-        records.append(record)
+        records.append(_encodable(record) if b"\\ud" in line.lower() else record)
     return records
+
+
+def _encodable(value: Any) -> Any:
+    """Return JSON data with names that are no Unicode text (a lone surrogate, which JSON allows) escaped."""
+    match value:
+        case str():
+            return value.encode(errors="backslashreplace").decode()
+        case list():
+            return [_encodable(part) for part in value]
+        case dict():
+            return {_encodable(name): _encodable(part) for name, part in value.items()}
+    return value
 
 
 def runs_table(records: list[dict[str, Any]]) -> pd.DataFrame:

@@ -123,7 +123,7 @@ def _write(points: list[FrontierPoint], title: str, out: Path) -> None:
 
     out.mkdir(parents=True, exist_ok=True)
     rows = [point.row() for point in points]
-    with (out / "frontier.csv").open("w", newline="", encoding="utf-8") as file:
+    with (out / "frontier.csv").open("w", newline="", encoding="utf-8", errors="backslashreplace") as file:
         writer = csv.DictWriter(file, rows[0])
         writer.writeheader()
         writer.writerows(rows)
