@@ -104,8 +104,9 @@ def _trusted(estimates: Path, max_topple: int | None) -> int:
 
 
 def _write(report: Report, job: Job, out: Path | None) -> None:
-    """File the plan: at exits 0, 3 and 4, and what was found before an interruption."""
-    if report.exit_code not in (0, 3, 4) and not (report.exit_code == 130 and report.actions is not None):
+    """File the plan: at exits 0, 3 and 4, and a plan or a bound that was found before an interruption."""
+    found = report.actions is not None or report.lower_bound is not None
+    if report.exit_code not in (0, 3, 4) and not (report.exit_code == 130 and found):
         return
     text = plan_text(report.plan(job))
     if out is None:
@@ -123,7 +124,11 @@ def _without_plan(report: Report, budget: float) -> str:
 
 
 def _end(report: Report, who: str, budget: float) -> None:
-    found = f"; the best plan so far has cost {report.incumbents[-1].cost}" if report.actions is not None else ""
+    found = ""
+    if report.actions is not None:
+        found = f"; the best plan so far has cost {report.incumbents[-1].cost}"
+    elif report.lower_bound is not None:
+        found = f" without a plan; none is cheaper than {report.lower_bound}"
     words = {
         "infeasible": "proven infeasible",
         "budget-spent": _without_plan(report, budget),

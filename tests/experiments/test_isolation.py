@@ -218,6 +218,21 @@ def test_an_interrupted_plan_command_writes_what_was_found(alive, tower_file, tm
     assert not alive()
 
 
+def test_an_interrupted_plan_command_without_a_plan_writes_its_bound(alive, tower_file, tmp_path):
+    out = tmp_path / "plan.json"
+    command = [sys.executable, "-m", "smash", "plan", tower_file, "--planner", "hangs-with-bounds", "--no-topple"]
+    caller = subprocess.Popen([*map(str, command), "--out", str(out)], stderr=subprocess.PIPE, text=True)
+    assert wait_until(lambda: len(alive()) >= 3)
+    time.sleep(1.0)
+    caller.send_signal(signal.SIGINT)
+    _, said = caller.communicate(timeout=20)
+    assert caller.returncode == 130
+    assert "without a plan; none is cheaper than 3" in said
+    document = json.loads(out.read_text())
+    assert (document["status"], document["lower_bound"], document["actions"]) == ("unknown", 3, None)
+    assert not alive()
+
+
 def test_an_unknown_warm_start_is_a_wrong_flag(tower_file):
     job = Job("smash-layered", read_instance(tower_file), SolveOptions(warm_start="nobody"), 5.0)
     with pytest.raises(SmashError, match="no planner is called 'nobody'"):
