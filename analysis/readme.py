@@ -105,6 +105,7 @@ def _copy(source: Path, target: Path) -> str:
     content = source.read_bytes()
     if target.is_file() and target.read_bytes() == content:
         return "current"
+    target.parent.mkdir(parents=True, exist_ok=True)
     target.write_bytes(content)
     return "made"
 

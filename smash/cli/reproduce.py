@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import sys
 from collections.abc import Sequence
+from fnmatch import fnmatch
 from pathlib import Path
 from time import monotonic
 
@@ -160,9 +161,9 @@ def _copy(reproduction: Reproduction, planned: Sequence[Planned], files: Sequenc
 
 
 def _small(entry: Planned) -> list[str]:
-    """Return the products of a step but for those that are too large for a reference set."""
+    """Return the products of a step but for those that a reference set does without."""
     names = entry.record.products if entry.record is not None else {}
-    return [name for name in names if name not in entry.step.not_copied]
+    return [name for name in names if not any(fnmatch(name, pattern) for pattern in entry.step.not_copied)]
 
 
 def _end(planned: Sequence[Planned], files: Sequence[Path]) -> None:

@@ -139,9 +139,9 @@ class Reproduction:
         record = self._read(step)
         if lacking := step.lacking():
             return Planned(step, "not run", f"not installed: {', '.join(lacking)}", record)
-        unmade = [name for name in step.needs if before[name].plan not in ("done", "kept")]
-        if unmade and running:
-            return Planned(step, "not run", f"it needs {', '.join(unmade)}", record)
+        unmade = [name for name in step.after if before[name].plan not in ("done", "kept", "not run")]
+        if running and step.after and not any(before[name].plan in ("done", "kept") for name in step.after):
+            return Planned(step, "not run", f"there is nothing of {', '.join(step.after)}", record)
         if record is None:
             return Planned(step, "to do", f"after {', '.join(unmade)}" if unmade else "", None)
         changes = record.made_from.changes(self._made_from(step, before))
@@ -149,7 +149,8 @@ class Reproduction:
             if changes and not self.keep_stale:
                 return Planned(step, "stale", "; ".join(changes), record)
             return Planned(step, "continued", record.problem or "it was killed", record)
-        changes += [f"{name} is to be made anew" for name in unmade]
+        if not running:
+            changes += [f"{name} is to be made anew" for name in unmade]
         missing, changed = self._damaged(record)
         if changed or (changes and not self.keep_stale):
             return Planned(step, "stale", "; ".join(changes + changed), record)
@@ -158,8 +159,8 @@ class Reproduction:
         return Planned(step, "kept" if changes else "done", "; ".join(changes), record)
 
     def _made_from(self, step: Step, before: dict[str, Planned]) -> MadeFrom:
-        needs = {name: made.products_hash() for name in step.needs if (made := before[name].record) is not None}
-        return made_from(step, self.here, self._code, needs)
+        uses = {name: made.products_hash() for name in step.after if (made := before[name].record) is not None}
+        return made_from(step, self.here, self._code, uses)
 
     def _damaged(self, record: Record) -> tuple[list[str], list[str]]:
         """Return in words the products that are missing, and those that somebody has changed."""

@@ -36,7 +36,8 @@ class Step(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """One `[[steps]]` table.
 
     `minutes` is the estimated time on 2 quiet cores; `products` are patterns below `{out}`, each of which must be met;
-    `needs` names steps that come first, `requires` packages without which the step is not run; `leaves_out` says what
+    `after` names earlier steps whose products it uses, as far as there are any; `requires` packages without which it is
+    not run; `leaves_out` says what
     of the whole it does not do, and why; `not_copied` are products that are too large for `--copy-to`.
     """
 
@@ -45,7 +46,7 @@ class Step(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     minutes: float
     commands: list[str]
     products: list[str]
-    needs: list[str] = []
+    after: list[str] = []
     requires: list[str] = []
     leaves_out: str = ""
     not_copied: list[str] = []
@@ -81,7 +82,7 @@ class MadeFrom(msgspec.Struct, frozen=True):
     code: str
     packages: dict[str, str]
     inputs: dict[str, str]
-    needs: dict[str, str]
+    uses: dict[str, str]
 
     def changes(self, now: MadeFrom) -> list[str]:
         """Return in words what is different now."""
@@ -96,7 +97,7 @@ class MadeFrom(msgspec.Struct, frozen=True):
         for name in sorted({*self.packages, *now.packages}):
             if self.packages.get(name) != now.packages.get(name):
                 words.append(f"{name} was {self.packages.get(name, 'missing')}")
-        words += [f"{name} was made anew" for name in now.needs if self.needs.get(name) != now.needs[name]]
+        words += [f"{name} was made anew" for name in now.uses if self.uses.get(name) != now.uses[name]]
         return words
 
 
@@ -139,8 +140,8 @@ def _check(steps: Steps, where: str) -> None:
         for product in step.products:
             inside = product.startswith(f"{step.name}/") and ".." not in Path(product).parts
             expect(inside, f"{at}.products", f"{product!r} does not lie in the step's folder {step.name}/")
-        for name in step.needs:
-            expect(name in before, f"{at}.needs", f"{name!r} is no earlier step; there are: {', '.join(before)}")
+        for name in step.after:
+            expect(name in before, f"{at}.after", f"{name!r} is no earlier step; there are: {', '.join(before)}")
         before.append(step.name)
 
 
@@ -175,11 +176,11 @@ def _installed(package: str) -> bool:
     return True
 
 
-def made_from(step: Step, here: Path, code: str, needs: dict[str, str]) -> MadeFrom:
-    """Return what the step would be made from now; `needs` has a hash of the products of each step that it needs."""
+def made_from(step: Step, here: Path, code: str, uses: dict[str, str]) -> MadeFrom:
+    """Return what the step would be made from now; `uses` has a hash of the products of each step that it uses."""
     inputs = {file.name: file_hash(file) for file in step.inputs(here)}
     packages = versions(DEFAULT) | {name: version(name) for name in PACKAGES if _installed(name)}
-    return MadeFrom(list(step.commands), code, packages, inputs, needs)
+    return MadeFrom(list(step.commands), code, packages, inputs, uses)
 
 
 def code_hash() -> str:

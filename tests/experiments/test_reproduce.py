@@ -74,7 +74,7 @@ def reproduce(file, out, *more):
 
 
 def test_a_second_run_does_nothing_and_says_so(steps, tmp_path):
-    file, out = steps(step("one", "a"), step("two", "b", 'needs = ["one"]\nleaves_out = "the rest"')), tmp_path / "out"
+    file, out = steps(step("one", "a"), step("two", "b", 'after = ["one"]\nleaves_out = "the rest"')), tmp_path / "out"
     first = reproduce(file, out)
     assert first.returncode == 0, first.error
     assert "2 of 2 steps to do" in first.stdout
@@ -104,9 +104,9 @@ def test_the_manifest_says_what_was_run_where_and_what_came_out(steps, tmp_path)
 
 
 def test_a_changed_input_makes_its_step_and_those_after_it_anew(steps, tmp_path):
-    file, out = steps(step("one", "a"), step("two", "b", 'needs = ["one"]')), tmp_path / "out"
+    file, out = steps(step("one", "a"), step("two", "b", 'after = ["one"]')), tmp_path / "out"
     reproduce(file, out)
-    steps(step("one", "a c"), step("two", "b", 'needs = ["one"]'))
+    steps(step("one", "a c"), step("two", "b", 'after = ["one"]'))
     planned = reproduce(file, out, "--dry-run").stdout
     assert planned.count("stale") == 2
     assert "its commands have changed" in planned
@@ -169,16 +169,27 @@ def test_an_interrupted_one_says_so_and_writes_what_it_has(steps, tmp_path):
     assert [made["state"] for made in json.loads((out / "manifest.json").read_text())["steps"]] == ["run", "not run"]
 
 
-def test_a_step_that_fails_is_named_and_stops_only_those_that_need_it(steps, tmp_path):
+def test_a_step_that_fails_is_named_and_stops_only_those_that_have_nothing_without_it(steps, tmp_path):
     bad = step("bad", "a").replace("python {here}", "python {here}/nowhere")
-    file = steps(bad, step("after", "b", 'needs = ["bad"]'), step("apart", "c"), step("lacks", "d", LACKS))
+    file = steps(bad, step("after", "b", 'after = ["bad"]'), step("apart", "c"), step("lacks", "d", LACKS))
     ended = reproduce(file, tmp_path / "out")
     assert ended.returncode == 2
     assert ended.error.startswith("step bad: `python {here}/nowhere")
     states = {made["name"]: made for made in json.loads((tmp_path / "out" / "manifest.json").read_text())["steps"]}
     assert [made["state"] for made in states.values()] == ["failed", "not run", "run", "not run"]
-    assert states["after"]["why"] == "it needs bad"
+    assert states["after"]["why"] == "there is nothing of bad"
     assert states["lacks"]["why"] == "not installed: no-such-package"
+
+
+def test_a_step_after_several_uses_those_that_there_are(steps, tmp_path):
+    bad = step("bad", "a").replace("python {here}", "python {here}/nowhere")
+    file = steps(bad, step("good", "b"), step("after", "c", 'after = ["bad", "good"]'))
+    assert reproduce(file, tmp_path / "out").returncode == 2
+    assert (tmp_path / "out" / "after" / "c").exists()
+    steps(step("bad", "a"), step("good", "b"), step("after", "c", 'after = ["bad", "good"]'))
+    assert reproduce(file, tmp_path / "out").returncode == 0
+    assert (tmp_path / "out" / "stale" / "after-1").exists()
+    assert "nothing to do" in reproduce(file, tmp_path / "out").stdout
 
 
 LACKS = 'requires = ["no-such-package"]'
@@ -190,7 +201,7 @@ LACKS = 'requires = ["no-such-package"]'
         (step("../one", "a"), "steps[0].name"),
         (step("logs", "a"), "steps[0].name"),
         (step("one", "a") * 2, "stands twice"),
-        (step("one", "a", 'needs = ["two"]'), "no earlier step"),
+        (step("one", "a", 'after = ["two"]'), "no earlier step"),
         (step("one", "a").replace("python", "rm"), "does not begin with smash or python"),
         (step("one", "a").replace('"one/*"', '"../*"'), "does not lie in the step's folder"),
         (step("one", "a").replace("minutes = 0.1", ""), "minutes"),
