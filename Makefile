@@ -4,8 +4,10 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
+SCENES := friction-0.10 friction-0.30 friction-0.40 friction-0.50
+
 .DEFAULT_GOAL := help
-.PHONY: help test test-slow lint suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full topple-map reproduce reproduce-full results
+.PHONY: help test test-slow lint suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full friction topple-map reproduce reproduce-full results
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -51,6 +53,16 @@ tables-full: $(STAMP) ## both tables whole: 20 instances a setting, up to 3 phys
 	$(BIN)/python -m smash episodes runs/tables-full --label fd-lama --policy replan --jobs 2
 	$(BIN)/python -m smash episodes runs/tables-full --label smash --policy replan --seeds 3 --jobs 2
 	$(BIN)/python -m analysis.execution_tables runs/tables-full
+
+friction: $(STAMP) ## the same plans under other friction, and topples by size (about 15 minutes on 2 cores)
+	$(BIN)/python -m smash sweep experiments/friction.toml --out runs/friction
+	$(BIN)/python -m smash episodes runs/friction --policy replan --policy open --jobs 2
+	$(BIN)/python -m smash topple-map --highest-cut 3 --seeds 3 --out runs/friction/default
+	for scene in $(SCENES); do \
+	  $(BIN)/python -m smash episodes runs/friction --policy replan --policy open --jobs 2 --scene experiments/scenes/$$scene.toml && \
+	  $(BIN)/python -m smash topple-map --highest-cut 3 --seeds 3 --scene experiments/scenes/$$scene.toml --out runs/friction/$$scene \
+	    || exit 1; done
+	$(BIN)/python -m analysis.execution_sweeps runs/friction $(addprefix runs/friction/,default $(SCENES))
 
 topple-map: $(STAMP) ## where toppled blocks land, per cut height and number (minutes)
 	$(BIN)/python -m smash topple-map --out runs/topple-map

@@ -1,4 +1,7 @@
-"""Scene files, `smash-scene/1`: block size, friction, speed and layout, in TOML or JSON, checked strictly."""
+"""Scene files, `smash-scene/1`: block size, friction, speed and layout, in TOML or JSON, checked strictly.
+
+A file that says `base = "default"` has from the default scene what it does not hold itself.
+"""
 
 from __future__ import annotations
 
@@ -62,6 +65,7 @@ class _SceneFile(msgspec.Struct, forbid_unknown_fields=True):
     format: Literal["smash-scene/1"]
     name: str
     stacks: list[_StackFile]
+    base: Literal["default"] | None = None
     block: _BlockFile = msgspec.field(default_factory=_BlockFile)
     friction: _FrictionFile = msgspec.field(default_factory=_FrictionFile)
     speed: _SpeedFile = msgspec.field(default_factory=_SpeedFile)
@@ -93,6 +97,8 @@ def scene_from_document(document: Any, where: str = "scene") -> Tabletop:
         MalformedFile: with one line that says where and what is allowed.
     """
     check_format(document, where, SCENE_FORMAT)
+    if document.get("base") == "default":
+        document = {**_parse(read_bytes(DEFAULT_SCENE), str(DEFAULT_SCENE)), **document}
     file = cast(_SceneFile, convert(document, _SceneFile, where))
     if not file.stacks:
         raise MalformedFile(where, "`stacks`: at least one is needed")

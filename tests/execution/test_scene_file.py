@@ -1,11 +1,12 @@
 import copy
+import dataclasses
 import json
 import tomllib
 
 import pytest
 
 from smash.execution.scene_file import DEFAULT_SCENE, default_scene, read_scene, scene_from_document
-from smash.execution.tabletop import DIRECTIONS, DoesNotFit, Slot
+from smash.execution.tabletop import DIRECTIONS, DoesNotFit, Friction, Slot
 from smash.problem import MalformedFile, StacksGoal, make_instance
 
 
@@ -24,11 +25,19 @@ def test_json_and_toml_say_the_same(document, tmp_path):
     assert read_scene(tmp_path / "scene.json") == default_scene()
 
 
+def test_a_scene_with_a_base_differs_from_it_in_what_it_says():
+    scene = scene_from_document(
+        {"format": "smash-scene/1", "name": "rough", "base": "default", "friction": {"block": 0.7}}
+    )
+    assert scene == dataclasses.replace(default_scene(), name="rough", friction=Friction(0.7, 0.9, 1.0))
+
+
 @pytest.mark.parametrize(
     ("path", "value", "word"),
     [
         (["format"], "smash-scene/2", "smash-scene/1"),
         (["colour"], "red", "colour"),
+        (["base"], "other", "base"),
         (["block"], {"side": 0.2}, "0.06"),
         (["block"], {"edge": 0.04}, "edge"),
         (["friction"], {"table": 0}, "friction.table"),
