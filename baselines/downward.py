@@ -20,6 +20,7 @@ from baselines.steps import parse_step
 
 PLAN_FILE = "plan"
 _PLAN_WRITTEN = "Plan cost:"
+_PLAN_COST = re.compile(r"^; cost = (\d+)", re.MULTILINE)
 _ASTAR_BOUND = re.compile(r"\] f = (\d+)")
 _SYMK_BOUND = re.compile(r"\] BOUND: (\d+) < (\d+)")
 _SIZES = re.compile(r"^Translator (variables|facts|operators|task size): (\d+)")
@@ -102,10 +103,18 @@ class DownwardPlanner(EnginePlanner):
             # An inadmissible search may prune what its heuristic takes for a dead end: no proof.
             return Outcome("exhausted", outcome.text) if outcome.kind == "unsolvable" else outcome
         if outcome.kind == "solved" and outcome.text == "solved" and run.log.cost is not None:
-            run.raise_bound(run.log.cost)
+            self._raise_to_cost(run)
         if outcome.kind == "exhausted" and exhausted and run.log.best is None:
             return Outcome("unsolvable", "search space exhausted: there is no plan")
         return outcome
+
+    def _raise_to_cost(self, run: Run) -> None:
+        """Take the cost of the search's last plan as proven, if the law charges the same."""
+        costs = run.details["search_costs"]
+        if costs and costs[-1] != run.log.cost:
+            run.log.refusals.append(f"{self.name}: the search says cost {costs[-1]}, the law {run.log.cost}")
+        elif run.log.cost is not None:
+            run.raise_bound(run.log.cost)
 
 
 class _PlanFiles:
@@ -115,6 +124,7 @@ class _PlanFiles:
         self._run = run
         self._read: set[Path] = set()
         self._times: list[Any] = run.details.setdefault("search_clock", [])
+        self._costs: list[int] = run.details.setdefault("search_costs", [])
 
     def read_new(self, line: str) -> None:
         """Offer every plan file that was not there before; `line` is what the search said, with its own clock."""
@@ -124,6 +134,9 @@ class _PlanFiles:
             self._read.add(file)
             text = file.read_text(encoding="utf-8")
             self._run.offer(parse_step(step) for step in text.splitlines() if step.startswith("("))
+            cost = _PLAN_COST.search(text)
+            if cost:
+                self._costs.append(int(cost[1]))
             clock = _SEARCH_CLOCK.match(line)
             if clock:
                 self._times.append(float(clock[1]))

@@ -1,4 +1,8 @@
-"""PDDL encodings: the domains of `domains/`, those that others register, and which of them a problem needs."""
+"""PDDL encodings: the domains of `domains/`, those that others register, and which of them a problem needs.
+
+Topples at cost 1 have hand-written domains. Where an instance has further aggregating actions or costs, its domain is
+put together by `baselines.family`.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +11,11 @@ from dataclasses import dataclass
 from importlib.metadata import entry_points
 from pathlib import Path
 
+from baselines.family.domain import domain_name, domain_text
+from baselines.family.part import Part
+from baselines.family.parts import parts_of
 from smash.problem.errors import SmashError, Unsupported
+from smash.problem.family import kinds_of
 from smash.problem.model import Instance, PlanOptions
 
 GROUP = "smash.encodings"
@@ -33,6 +41,7 @@ class Encoding:
         closure: whether `(above …)` and `(stacked …)` hold at the start, as in `domains/topple-conditional.pddl`.
         capped: whether it counts the blocks of a topple, from `(cap ?k)` down.
         with_cap: the encoding that takes its place where `max_topple` binds; None: it cannot say that.
+        parts: of a domain of `baselines.family`, what it is put together from; they say facts and steps.
     """
 
     name: str
@@ -43,6 +52,7 @@ class Encoding:
     closure: bool = False
     capped: bool = False
     with_cap: Encoding | None = None
+    parts: tuple[Part, ...] = ()
 
     @property
     def conditional_effects(self) -> bool:
@@ -79,6 +89,8 @@ ENCODINGS = {
 BY_DOMAIN = {encoding.domain: encoding for encoding in ENCODINGS.values()}
 TOPPLE_ENCODINGS = ("conditional", "chain")
 """The two ways of this package to tell a topple: one action with conditional effects, or a chain of STRIPS actions."""
+FAMILY = "chain"
+"""The way in which further aggregating actions and costs can be told."""
 
 
 def encoding_names() -> list[str]:
@@ -113,6 +125,20 @@ def cap_of(instance: Instance, options: PlanOptions) -> int | None:
     return cap if options.topple and cap is not None and cap < len(instance.blocks) else None
 
 
+def needs_family(instance: Instance, options: PlanOptions) -> bool:
+    """Return whether a plan may do or cost something that the domains of topple alone do not know."""
+    kinds = [kind.name for kind in kinds_of(instance, options) if kind.name != "topple"]
+    return bool(kinds) or not instance.costs.plain or any(carrier.holds for carrier in instance.carriers)
+
+
+def family_encoding(instance: Instance, options: PlanOptions) -> Encoding:
+    """Return the encoding that knows exactly the actions and the costs of an instance."""
+    parts = parts_of(instance, options)
+    files = [part.file(instance, options) for part in parts]
+    name = domain_name(files)
+    return Encoding(name.removeprefix("smash-"), name, domain_text(files), parts=parts)
+
+
 def unsupported_reason(instance: Instance, options: PlanOptions, wanted: str) -> str | None:
     """Return why the encoding `wanted` (`conditional`, `chain`, …) cannot say this problem, or None.
 
@@ -120,6 +146,11 @@ def unsupported_reason(instance: Instance, options: PlanOptions, wanted: str) ->
         UnknownEncoding: where none is called so.
     """
     cap = cap_of(instance, options)
+    if needs_family(instance, options):
+        get_encoding(wanted)
+        return (
+            None if wanted == FAMILY else f"the {wanted} encoding knows topple alone, at cost 1; use the chain encoding"
+        )
     if cap is not None and get_encoding(wanted).with_cap is None:
         return f"the {wanted} encoding cannot count the blocks of a topple (max_topple {cap}); use the chain encoding"
     return None
@@ -138,6 +169,8 @@ def encoding_for(instance: Instance, options: PlanOptions, wanted: str) -> Encod
     if reason is not None:
         raise Unsupported(reason)
     encoding = get_encoding(wanted)
+    if needs_family(instance, options):
+        return family_encoding(instance, options)
     if not options.topple:
         return PICK_AND_PLACE
     return encoding if cap_of(instance, options) is None else encoding.with_cap or encoding

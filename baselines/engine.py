@@ -11,11 +11,13 @@ from pathlib import Path
 from time import monotonic
 from typing import Any, Self
 
-from baselines.encodings import UnknownEncoding, encoding_names, get_encoding, unsupported_reason
+from baselines.encodings import FAMILY, UnknownEncoding, encoding_names, get_encoding, needs_family, unsupported_reason
 from baselines.facts import trim_buffers
+from baselines.family.parts import TOLD
+from baselines.names import Step
 from baselines.outcomes import Outcome
 from baselines.process import MEMORY_LIMIT
-from baselines.steps import Step, actions_of
+from baselines.steps import actions_of
 from baselines.task import PddlTask, compile_instance
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
 from smash.problem.errors import IllegalAction, PlannerCrashed, PlannerOutOfMemory, Unsupported
@@ -55,6 +57,10 @@ class EnginePlanner(BasePlanner):
     """The engine's name in incumbents and bounds."""
     encoding: str
     """How topples are told to it: `conditional`, `chain`, or an encoding that others registered."""
+    falls_back: bool = False
+    """Whether it takes the chain for problems that its encoding cannot say because they go beyond topple at cost 1."""
+    aggregating = TOLD
+    weighs = True
 
     def __init__(self, memory: int = MEMORY_LIMIT) -> None:
         """Make the planner.
@@ -66,12 +72,17 @@ class EnginePlanner(BasePlanner):
 
     def unsupported(self, instance: Instance, options: SolveOptions) -> str | None:
         """Return why the encoding cannot say the problem, or None."""
-        reason = unsupported_reason(instance, options, self.encoding)
+        encoding = self.encoding_of(instance, options)
+        reason = unsupported_reason(instance, options, encoding)
         if reason is not None or not options.topple or self.takes_conditional_effects():
             return reason
-        if get_encoding(self.encoding).conditional_effects:
-            return f"it takes no conditional effects, which the {self.encoding} encoding has; use the chain encoding"
+        if get_encoding(encoding).conditional_effects:
+            return f"it takes no conditional effects, which the {encoding} encoding has; use the chain encoding"
         return None
+
+    def encoding_of(self, instance: Instance, options: SolveOptions) -> str:
+        """Return how this problem is told to it."""
+        return FAMILY if self.falls_back and needs_family(instance, options) else self.encoding
 
     def with_encoding(self, encoding: str) -> Self:
         """Return the same planner on another encoding: what `NAME:ENCODING` means.
@@ -82,6 +93,7 @@ class EnginePlanner(BasePlanner):
         if encoding not in encoding_names():
             raise UnknownEncoding(encoding, encoding_names())
         other = copy(self)
+        other.falls_back = False
         other.name, other.encoding = f"{self.name.partition(':')[0]}:{encoding}", encoding
         return other
 
@@ -108,7 +120,7 @@ class EnginePlanner(BasePlanner):
             log.offer((), "start")
             log.prove(0, "start")
             return log.result()
-        task = compile_instance(trim_buffers(instance), options, self.encoding)
+        task = compile_instance(trim_buffers(instance), options, self.encoding_of(instance, options))
         with tempfile.TemporaryDirectory(prefix="smash-", ignore_cleanup_errors=True) as folder:
             run = Run(task, log, self.name, Path(folder), deadline, self.memory)
             run.details["encoding"] = task.encoding.name

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import ClassVar
 
 from baselines.engine import EnginePlanner, Run
+from baselines.names import Step
 from baselines.outcomes import BUDGET_SPENT, MEMORY_SPENT, Outcome
 from baselines.process import EngineProcess
-from baselines.steps import Step, parse_step
+from baselines.steps import parse_step
 
 _STEP = re.compile(r"^[\d.]+: (\(.*\))$")
 _PLAN_BEGINS = "Found Plan:"

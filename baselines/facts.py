@@ -7,38 +7,60 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from baselines.encodings import Encoding, cap_of
-from baselines.names import Names, count_names
+from baselines.family.layout import Layout
+from baselines.family.part import Telling
+from baselines.names import Fact, Names, count_names
 from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal
-
-Fact = tuple[str, ...]
-"""A predicate and its arguments, by PDDL names: `("on", "b02", "b01")`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """A PDDL problem without its syntax: objects by type, what holds at the start, what must hold at the end."""
+    """A PDDL problem without its syntax: objects by type, what holds at the start, what must hold at the end.
+
+    `costs` are the values of cost functions.
+    """
 
     objects: dict[str, tuple[str, ...]]
     start: tuple[Fact, ...]
     goal: tuple[Fact, ...]
+    costs: tuple[tuple[Fact, int], ...] = ()
 
 
 def trim_buffers(instance: Instance) -> Instance:
     """Return an equivalent instance without the buffers that no plan can need.
 
     Never more piles than blocks stand at once, so the buffers used at the start and as many more as there are
-    blocks in all suffice; the others only make planners slow.
+    blocks in all suffice; the others only make planners slow. Where travel costs, this holds for the buffers
+    of one position each.
     """
-    used = [buffer for buffer in instance.buffers if instance.start.get(buffer)]
-    spare = [buffer for buffer in instance.buffers if not instance.start.get(buffer)]
-    kept = {*used, *spare[: max(0, len(instance.blocks) - len(used))]}
+    kept: set[str] = set()
+    for group in _alike(instance):
+        used = [buffer for buffer in group if instance.start.get(buffer)]
+        spare = [buffer for buffer in group if not instance.start.get(buffer)]
+        kept.update(used, spare[: max(0, len(instance.blocks) - len(used))])
     buffers = tuple(buffer for buffer in instance.buffers if buffer in kept)
     start = {location: instance.start.get(location, ()) for location in instance.stacks + buffers}
-    return replace(instance, buffers=buffers, start=start)
+    costs = instance.costs
+    dropped = set(instance.buffers) - kept
+    if dropped:
+        places = {place: point for place, point in costs.positions.items() if place not in dropped}
+        costs = replace(costs, positions=places)
+    return replace(instance, buffers=buffers, start=start, costs=costs)
+
+
+def _alike(instance: Instance) -> list[list[str]]:
+    """Return the buffers in groups that no plan's cost tells apart."""
+    groups: dict[object, list[str]] = {}
+    for buffer in instance.buffers:
+        key = instance.costs.positions[buffer] if instance.costs.travel else None
+        groups.setdefault(key, []).append(buffer)
+    return list(groups.values())
 
 
 def facts_of(instance: Instance, options: PlanOptions, encoding: Encoding, names: Names) -> Facts:
     """Return the facts of an instance in one encoding."""
+    if encoding.parts:
+        return _family_facts(Telling(instance, options, Layout(instance, names)), encoding)
     cap = cap_of(instance, options) if encoding.capped else None
     counts = count_names(max(len(instance.buffers), 0 if cap is None else cap - 1))
     start: list[Fact] = [("hand-empty",)]
@@ -58,6 +80,18 @@ def facts_of(instance: Instance, options: PlanOptions, encoding: Encoding, names
     }
     ended: tuple[Fact, ...] = (("hand-empty",), ("idle",)) if ("idle",) in start else (("hand-empty",),)
     return Facts(objects, tuple(start), (*_goal(instance, names), *ended))
+
+
+def _family_facts(telling: Telling, encoding: Encoding) -> Facts:
+    objects: dict[str, tuple[str, ...]] = {}
+    for part in encoding.parts:
+        objects |= part.objects(telling)
+    return Facts(
+        objects,
+        tuple(fact for part in encoding.parts for fact in part.start(telling)),
+        (*_goal(telling.instance, telling.layout.names), ("hand-empty",), ("idle",)),
+        tuple(cost for part in encoding.parts for cost in part.costs(telling)),
+    )
 
 
 def _piles(instance: Instance, encoding: Encoding, names: Names) -> Iterator[Fact]:

@@ -7,6 +7,11 @@ from dataclasses import dataclass, field
 
 from smash.problem.model import Instance
 
+Fact = tuple[str, ...]
+"""A predicate and its arguments, by PDDL names: `("on", "b02", "b01")`."""
+Step = tuple[str, ...]
+"""A grounded PDDL action: its name and its arguments, `("pick", "b02", "b01")`."""
+
 
 @dataclass(frozen=True, slots=True)
 class Names:

@@ -26,6 +26,7 @@ class FdLama(DownwardPlanner):
     summary = "Fast Downward LAMA, anytime; topple as one action with conditional effects"
     name = "fd-lama"
     encoding = "conditional"
+    falls_back = True
     configuration = LAMA
 
 
@@ -33,6 +34,7 @@ class FdLamaConditional(FdLama):
     """The same under its full name."""
 
     name = "fd-lama:conditional"
+    falls_back = False
 
 
 class FdLamaChain(FdLama):
@@ -41,6 +43,7 @@ class FdLamaChain(FdLama):
     summary = "Fast Downward LAMA, anytime; topple as a chain of STRIPS actions"
     name = "fd-lama:chain"
     encoding = "chain"
+    falls_back = False
 
 
 class FdLamaFirst(DownwardPlanner):
@@ -49,6 +52,7 @@ class FdLamaFirst(DownwardPlanner):
     summary = "Fast Downward LAMA, first plan only; topple as one action with conditional effects"
     name = "fd-lama-first"
     encoding = "conditional"
+    falls_back = True
     configuration = LAMA_FIRST
     anytime = False
 

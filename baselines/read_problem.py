@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
 from baselines.encodings import BY_DOMAIN, Encoding
-from baselines.facts import Fact, facts_of
-from baselines.names import Names, numbered
+from baselines.facts import facts_of
+from baselines.names import Fact, Names, numbered
 from baselines.task import HEADER, PddlTask
 from smash.problem.errors import MalformedFile
 from smash.problem.files import make_instance

@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from baselines.encodings import ENCODINGS, Encoding
-from baselines.facts import Fact
+from baselines.names import Fact
 from baselines.read_problem import RawProblem, ReadProblem, interpret
 from smash.problem.errors import Unsupported
 

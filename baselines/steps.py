@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
 
+from baselines.family.layout import Layout
+from baselines.family.part import Part, Telling, step_names
+from baselines.names import Step
 from baselines.task import PddlTask
 from smash.problem.errors import IllegalAction
 from smash.problem.model import TABLE, Action, Pick, Place, State
 from smash.problem.rules import Law
 from smash.problem.topple import Topple
-
-Step = tuple[str, ...]
-"""A grounded PDDL action: its name and its arguments, `("pick", "b02", "b01")`."""
 
 
 def parse_step(line: str) -> Step:
@@ -25,18 +26,17 @@ def actions_of(steps: Iterable[Step], task: PddlTask) -> list[Action]:
     Raises:
         IllegalAction: where a step is not of the encoding, or the law refuses what it says.
     """
-    return list(_Decoder(task).run(steps))
+    decoder = _FamilyDecoder(task) if task.encoding.parts else _ToppleDecoder(task)
+    return list(decoder.run(steps))
 
 
-class _Decoder:
+class _Decoder(ABC):
     """Follows the state, because a PDDL step does not say in which location and height it happens."""
 
     def __init__(self, task: PddlTask) -> None:
         self._task = task
         self._law = Law(task.instance, task.options)
         self._state = State.start_of(task.instance)
-        self._where = {block: at for at, pile in self._state.piles.items() for block in pile}
-        self._lowest: str | None = None
 
     def run(self, steps: Iterable[Step]) -> Iterator[Action]:
         for step in steps:
@@ -47,6 +47,36 @@ class _Decoder:
             if action is not None:
                 self._follow(action)
                 yield action
+
+    @abstractmethod
+    def _action(self, step: Step) -> Action | None:
+        """Return the action that a step completes, or None."""
+
+    def _follow(self, action: Action) -> None:
+        self._law.apply(self._state, action)
+
+
+class _FamilyDecoder(_Decoder):
+    """Asks the part of the domain that has the step."""
+
+    def __init__(self, task: PddlTask) -> None:
+        super().__init__(task)
+        self._telling = _telling(task)
+        self._part: dict[str, Part] = {
+            name: part for part in task.encoding.parts for name in step_names(part.file(task.instance, task.options))
+        }
+
+    def _action(self, step: Step) -> Action | None:
+        return self._part[step[0]].action(self._telling, self._state, step)
+
+
+class _ToppleDecoder(_Decoder):
+    """Reads the steps of the domains that know topple alone."""
+
+    def __init__(self, task: PddlTask) -> None:
+        super().__init__(task)
+        self._where = {block: at for at, pile in self._state.piles.items() for block in pile}
+        self._lowest: str | None = None
 
     def _action(self, step: Step) -> Action | None:
         block = self._task.names.block_of[step[1]]
@@ -85,7 +115,7 @@ class _Decoder:
         return Topple(location, self._state.piles[location].index(lowest) + 1)
 
     def _follow(self, action: Action) -> None:
-        self._law.apply(self._state, action)
+        super()._follow(action)
         if isinstance(action, Place):
             self._where[action.block] = action.target
 
@@ -103,13 +133,23 @@ def steps_of(actions: Sequence[Action], task: PddlTask) -> list[Step]:
         reason = law.refusal(state, action)
         if reason is not None:
             raise IllegalAction(f"{action}: {reason}")
-        steps += _Encoder(task, state).steps(action)
+        steps += _family_steps(task, state, action) if task.encoding.parts else _Encoder(task, state).steps(action)
         law.apply(state, action)
     return steps
 
 
+def _telling(task: PddlTask) -> Telling:
+    return Telling(task.instance, task.options, Layout(task.instance, task.names))
+
+
+def _family_steps(task: PddlTask, state: State, action: Action) -> Iterator[Step]:
+    telling = _telling(task)
+    part = next(part for part in task.encoding.parts if part.tells(telling, action))
+    return part.steps(telling, state, action)
+
+
 class _Encoder:
-    """The steps of one action in one state."""
+    """The steps of one action in one state, in the domains that know topple alone."""
 
     def __init__(self, task: PddlTask, state: State) -> None:
         self._task = task

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from baselines.encodings import Encoding, encoding_for
-from baselines.facts import Fact, Facts, facts_of
-from baselines.names import Names
+from baselines.facts import Facts, facts_of
+from baselines.names import Fact, Names
 from smash.problem.files import write_text
 from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal
 
@@ -42,7 +42,10 @@ class PddlTask:
             "(define (problem smash)",
             f"  (:domain {self.encoding.domain})",
             "  (:objects\n" + "\n".join(objects) + ")",
-            "  (:init\n    (= (total-cost) 0)\n" + _fact_lines(self.facts.start) + ")",
+            "  (:init\n    (= (total-cost) 0)\n"
+            + "".join(_cost_lines(self.facts))
+            + _fact_lines(self.facts.start)
+            + ")",
             "  (:goal (and\n" + _fact_lines(self.facts.goal) + "))",
             "  (:metric minimize (total-cost)))",
         ]
@@ -70,6 +73,10 @@ def compile_instance(instance: Instance, options: PlanOptions, wanted: str) -> P
 
 def _fact_lines(facts: Iterable[Fact]) -> str:
     return "\n".join(f"    ({' '.join(fact)})" for fact in facts)
+
+
+def _cost_lines(facts: Facts) -> Iterator[str]:
+    return (f"    (= ({' '.join(function)}) {value})\n" for function, value in facts.costs)
 
 
 def _header(instance: Instance, names: Names) -> dict[str, object]:

@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from baselines.steps import Step, steps_of
+from baselines.names import Step
+from baselines.steps import steps_of
 from baselines.task import PddlTask, compile_instance
 from smash.problem.model import Action, Instance, PlanOptions
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from smash.cli.choices import without_option
 from smash.problem.errors import MalformedFile
 from smash.problem.files import read_instance
 from smash.problem.model import PlanOptions
@@ -22,6 +23,7 @@ from smash.problem.model import PlanOptions
 )
 @click.option("--no-topple", is_flag=True, help="Pick and place only.")
 @click.option("--max-topple", type=click.IntRange(min=1), metavar="M", help="At most M blocks in one topple (chain).")
+@without_option
 @click.option(
     "--out",
     type=click.Path(path_type=Path, file_okay=False),
@@ -29,17 +31,21 @@ from smash.problem.model import PlanOptions
     metavar="DIR",
     help="Directory for domain.pddl and problem.pddl; made where it is missing.",
 )
-def command(instance: Path, encoding: str, no_topple: bool, max_topple: int | None, out: Path) -> None:
+def command(
+    instance: Path, encoding: str, no_topple: bool, max_topple: int | None, without: tuple[str, ...], out: Path
+) -> None:
     """Write INSTANCE as domain.pddl and problem.pddl.
 
     \b
     Examples:
       smash export-pddl instance.json --encoding chain --out my-pddl
       smash export-pddl instance.json --encoding conditional --out my-pddl
+      smash export-pddl scoop.json --without lift --out my-pddl
     """
     from baselines.task import compile_instance
 
-    task = compile_instance(read_instance(instance), PlanOptions(not no_topple, max_topple), encoding)
+    options = PlanOptions(not no_topple, max_topple, without=without)
+    task = compile_instance(read_instance(instance), options, encoding)
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -1,0 +1,53 @@
+"""The family's domains: the parts that an instance needs, put together into one PDDL domain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from baselines.family.part import part_text
+
+SECTIONS = (":types", ":predicates", ":functions")
+"""What parts add lines to; everything after them is actions."""
+
+
+def domain_name(files: Sequence[str]) -> str:
+    """Return the PDDL name of the domain of these parts: `smash-costs-topple-carry`."""
+    return "-".join(["smash-costs", *files[1:]])
+
+
+def domain_text(files: Sequence[str]) -> str:
+    """Return the PDDL text of the domain of these parts, comments included.
+
+    Args:
+        files: their names; the first is pick and place.
+    """
+    merged: dict[str, list[str]] = {section: [] for section in SECTIONS}
+    actions: list[str] = []
+    for file in files:
+        text = part_text(file)
+        for start, end in _forms(text):
+            section = text[start + 1 : end].split(maxsplit=1)[0]
+            if section in merged:
+                merged[section].append(text[start + 1 : end - 1].removeprefix(section).strip())
+        actions.append(text[text.index("; ---") :].rstrip())
+    lines = [f"(define (domain {domain_name(files)})", "(:requirements :strips :typing :action-costs)", ""]
+    for section, added in merged.items():
+        lines += [f"({section}", *(f"  {words}" for words in added if words), ")", ""]
+    return "\n".join([*lines, "\n\n".join(actions), ")", ""])
+
+
+def _forms(text: str) -> Iterator[tuple[int, int]]:
+    """Yield where each top-level parenthesised form starts and ends; comments are skipped."""
+    depth, start, comment = 0, 0, False
+    for index, character in enumerate(text):
+        if comment:
+            comment = character != "\n"
+        elif character == ";":
+            comment = True
+        elif character == "(":
+            start = start if depth else index
+            depth += 1
+        elif character == ")":
+            depth -= 1
+            if not depth:
+                yield start, index + 1

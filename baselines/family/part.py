@@ -1,0 +1,110 @@
+"""What one action of the family is to PDDL: a file of `domains/parts`, and how it is said in facts and steps."""
+
+from __future__ import annotations
+
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
+
+from baselines.family.layout import Layout
+from baselines.names import Fact, Step
+from smash.problem.aggregating import allowed
+from smash.problem.family import FAMILY
+from smash.problem.model import Action, Instance, PlanOptions, State
+
+PARTS = Path(__file__).resolve().parents[2] / "domains" / "parts"
+"""The parts of domains, in the tree and in an installed package alike."""
+
+
+@dataclass(frozen=True, slots=True)
+class Telling:
+    """What a part tells of: an instance under plan options, and the PDDL names of what is in it."""
+
+    instance: Instance
+    options: PlanOptions
+    layout: Layout
+
+    def block(self, name: str) -> str:
+        """Return the PDDL name of a block."""
+        return self.layout.names.blocks[name]
+
+    def named(self, short: str) -> str:
+        """Return the block that a PDDL name stands for."""
+        return self.layout.names.block_of[short]
+
+    def where(self, state: State, short: str) -> tuple[str, int]:
+        """Return the location and the 1-based height of a block, by its PDDL name.
+
+        Raises:
+            ValueError: where it is in no pile.
+        """
+        name = self.named(short)
+        for location, pile in state.piles.items():
+            if name in pile:
+                return location, pile.index(name) + 1
+        raise ValueError(f"{short} is in no pile")
+
+    def base(self, location: str) -> str | None:
+        """Return the PDDL name of a stack location, or None for a buffer: those are counted."""
+        return self.layout.names.locations.get(location)
+
+
+class Part(ABC):
+    """One part of the domains: the PDDL text, the facts of the start, and steps to actions and back.
+
+    Attributes:
+        kind: the aggregating action's name in the law's family.
+    """
+
+    kind: ClassVar[str]
+
+    def needed(self, instance: Instance, options: PlanOptions) -> bool:
+        """Return whether the domain of this instance has the part."""
+        return allowed(FAMILY[self.kind], instance, options)
+
+    def file(self, instance: Instance, options: PlanOptions) -> str:
+        """Return the name of the file in `domains/parts`, without its ending."""
+        return self.kind
+
+    def objects(self, telling: Telling) -> Mapping[str, tuple[str, ...]]:
+        """Return the objects that it adds, by type."""
+        return {}
+
+    @abstractmethod
+    def start(self, telling: Telling) -> Iterator[Fact]:
+        """Yield the facts that it adds to the start."""
+
+    @abstractmethod
+    def costs(self, telling: Telling) -> Iterator[tuple[Fact, int]]:
+        """Yield the values of its cost functions."""
+
+    @abstractmethod
+    def tells(self, telling: Telling, action: Action) -> bool:
+        """Return whether this part says `action`."""
+
+    @abstractmethod
+    def steps(self, telling: Telling, state: State, action: Action) -> Iterator[Step]:
+        """Yield the steps of an action that it says, legal in `state`."""
+
+    @abstractmethod
+    def action(self, telling: Telling, state: State, step: Step) -> Action | None:
+        """Return the action that one of its steps completes; None: more steps are to come, or nothing has changed.
+
+        Args:
+            telling: the problem.
+            state: the state before the action, also where earlier steps have begun it.
+            step: a grounded action of its file.
+        """
+
+
+def part_text(file: str) -> str:
+    """Return the PDDL text of a part."""
+    return (PARTS / f"{file}.pddl").read_text(encoding="utf-8")
+
+
+def step_names(file: str) -> list[str]:
+    """Return the names of the PDDL actions of a part."""
+    return re.findall(r"^\(:action\s+(\S+)", part_text(file), re.MULTILINE)
