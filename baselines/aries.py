@@ -8,7 +8,7 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 from time import monotonic
-from typing import Any
+from typing import Any, ClassVar
 
 from baselines.engine import EnginePlanner, Run
 from baselines.outcomes import BUDGET_SPENT, MEMORY_SPENT, Outcome
@@ -27,7 +27,13 @@ _ENDS = {
 
 
 class AriesPlanner(EnginePlanner):
-    """Aries in its anytime mode. It optimises within a bounded number of actions only, so it proves nothing here."""
+    """Aries in its anytime mode. It optimises within a bounded number of actions only, so it proves nothing here.
+
+    It takes no costs that are functions (unified-planning reads them as real numbers), which the family's domains have.
+    """
+
+    aggregating: ClassVar[frozenset[str]] = frozenset({"topple"})
+    weighs: ClassVar[bool] = False
 
     def missing(self) -> str | None:
         """Return what is not installed, or None."""

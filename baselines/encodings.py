@@ -15,7 +15,7 @@ from baselines.family.domain import domain_name, domain_text
 from baselines.family.part import Part
 from baselines.family.parts import parts_of
 from smash.problem.errors import SmashError, Unsupported
-from smash.problem.family import kinds_of
+from smash.problem.family import is_plain
 from smash.problem.model import Instance, PlanOptions
 
 GROUP = "smash.encodings"
@@ -125,18 +125,12 @@ def cap_of(instance: Instance, options: PlanOptions) -> int | None:
     return cap if options.topple and cap is not None and cap < len(instance.blocks) else None
 
 
-def needs_family(instance: Instance, options: PlanOptions) -> bool:
-    """Return whether a plan may do or cost something that the domains of topple alone do not know."""
-    kinds = [kind.name for kind in kinds_of(instance, options) if kind.name != "topple"]
-    return bool(kinds) or not instance.costs.plain or any(carrier.holds for carrier in instance.carriers)
-
-
 def family_encoding(instance: Instance, options: PlanOptions) -> Encoding:
     """Return the encoding that knows exactly the actions and the costs of an instance."""
     parts = parts_of(instance, options)
-    files = [part.file(instance, options) for part in parts]
-    name = domain_name(files)
-    return Encoding(name.removeprefix("smash-"), name, domain_text(files), parts=parts)
+    texts = {part.file(instance, options): part.text(instance, options) for part in parts}
+    name = domain_name(list(texts))
+    return Encoding(name.removeprefix("smash-"), name, domain_text(texts), parts=parts)
 
 
 def unsupported_reason(instance: Instance, options: PlanOptions, wanted: str) -> str | None:
@@ -146,7 +140,7 @@ def unsupported_reason(instance: Instance, options: PlanOptions, wanted: str) ->
         UnknownEncoding: where none is called so.
     """
     cap = cap_of(instance, options)
-    if needs_family(instance, options):
+    if not is_plain(instance, options):
         get_encoding(wanted)
         return (
             None if wanted == FAMILY else f"the {wanted} encoding knows topple alone, at cost 1; use the chain encoding"
@@ -169,7 +163,7 @@ def encoding_for(instance: Instance, options: PlanOptions, wanted: str) -> Encod
     if reason is not None:
         raise Unsupported(reason)
     encoding = get_encoding(wanted)
-    if needs_family(instance, options):
+    if not is_plain(instance, options):
         return family_encoding(instance, options)
     if not options.topple:
         return PICK_AND_PLACE

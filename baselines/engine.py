@@ -9,9 +9,9 @@ from copy import copy
 from dataclasses import dataclass, field
 from pathlib import Path
 from time import monotonic
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
-from baselines.encodings import FAMILY, UnknownEncoding, encoding_names, get_encoding, needs_family, unsupported_reason
+from baselines.encodings import FAMILY, UnknownEncoding, encoding_names, get_encoding, unsupported_reason
 from baselines.facts import trim_buffers
 from baselines.family.parts import TOLD
 from baselines.names import Step
@@ -21,6 +21,7 @@ from baselines.steps import actions_of
 from baselines.task import PddlTask, compile_instance
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
 from smash.problem.errors import IllegalAction, PlannerCrashed, PlannerOutOfMemory, Unsupported
+from smash.problem.family import is_plain
 from smash.problem.model import Instance, State
 from smash.problem.rules import Law
 
@@ -59,8 +60,8 @@ class EnginePlanner(BasePlanner):
     """How topples are told to it: `conditional`, `chain`, or an encoding that others registered."""
     falls_back: bool = False
     """Whether it takes the chain for problems that its encoding cannot say because they go beyond topple at cost 1."""
-    aggregating = TOLD
-    weighs = True
+    aggregating: ClassVar[frozenset[str]] = TOLD
+    weighs: ClassVar[bool] = True
 
     def __init__(self, memory: int = MEMORY_LIMIT) -> None:
         """Make the planner.
@@ -82,7 +83,7 @@ class EnginePlanner(BasePlanner):
 
     def encoding_of(self, instance: Instance, options: SolveOptions) -> str:
         """Return how this problem is told to it."""
-        return FAMILY if self.falls_back and needs_family(instance, options) else self.encoding
+        return self.encoding if not self.falls_back or is_plain(instance, options) else FAMILY
 
     def with_encoding(self, encoding: str) -> Self:
         """Return the same planner on another encoding: what `NAME:ENCODING` means.

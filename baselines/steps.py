@@ -63,7 +63,7 @@ class _FamilyDecoder(_Decoder):
         super().__init__(task)
         self._telling = _telling(task)
         self._part: dict[str, Part] = {
-            name: part for part in task.encoding.parts for name in step_names(part.file(task.instance, task.options))
+            name: part for part in task.encoding.parts for name in step_names(part.text(task.instance, task.options))
         }
 
     def _action(self, step: Step) -> Action | None:

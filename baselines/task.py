@@ -9,6 +9,7 @@ from pathlib import Path
 
 from baselines.encodings import Encoding, encoding_for
 from baselines.facts import Facts, facts_of
+from baselines.family.layout import Layout
 from baselines.names import Fact, Names
 from smash.problem.files import write_text
 from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal
@@ -38,7 +39,7 @@ class PddlTask:
         """The problem."""
         objects = [f"    {' '.join(members)} - {kind}" for kind, members in self.facts.objects.items() if members]
         lines = [
-            HEADER + json.dumps(_header(self.instance, self.names)),
+            HEADER + json.dumps(_header(self)),
             "(define (problem smash)",
             f"  (:domain {self.encoding.domain})",
             "  (:objects\n" + "\n".join(objects) + ")",
@@ -79,8 +80,9 @@ def _cost_lines(facts: Facts) -> Iterator[str]:
     return (f"    (= ({' '.join(function)}) {value})\n" for function, value in facts.costs)
 
 
-def _header(instance: Instance, names: Names) -> dict[str, object]:
-    return {
+def _header(task: PddlTask) -> dict[str, object]:
+    instance, names = task.instance, task.names
+    header: dict[str, object] = {
         "instance": instance.name,
         "goal": GOAL_KINDS[type(instance.goal)],
         "blocks": dict(names.block_of),
@@ -88,3 +90,8 @@ def _header(instance: Instance, names: Names) -> dict[str, object]:
         "buffers": list(instance.buffers),
         "on_buffers": {names.blocks[pile[0]]: at for at in instance.buffers if (pile := instance.start.get(at))},
     }
+    if task.encoding.parts:
+        layout = Layout(instance, names)
+        header["carriers"] = {short: name for name, short in layout.carriers.items()}
+        header["stations"] = {short: name for name, short in layout.stations.items()}
+    return header

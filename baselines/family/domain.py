@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-
-from baselines.family.part import part_text
+from collections.abc import Iterator, Mapping, Sequence
 
 SECTIONS = (":types", ":predicates", ":functions")
 """What parts add lines to; everything after them is actions."""
@@ -15,22 +13,21 @@ def domain_name(files: Sequence[str]) -> str:
     return "-".join(["smash-costs", *files[1:]])
 
 
-def domain_text(files: Sequence[str]) -> str:
+def domain_text(texts: Mapping[str, str]) -> str:
     """Return the PDDL text of the domain of these parts, comments included.
 
     Args:
-        files: their names; the first is pick and place.
+        texts: their texts by name; the first is pick and place.
     """
     merged: dict[str, list[str]] = {section: [] for section in SECTIONS}
     actions: list[str] = []
-    for file in files:
-        text = part_text(file)
+    for text in texts.values():
         for start, end in _forms(text):
             section = text[start + 1 : end].split(maxsplit=1)[0]
             if section in merged:
                 merged[section].append(text[start + 1 : end - 1].removeprefix(section).strip())
         actions.append(text[text.index("; ---") :].rstrip())
-    lines = [f"(define (domain {domain_name(files)})", "(:requirements :strips :typing :action-costs)", ""]
+    lines = [f"(define (domain {domain_name(list(texts))})", "(:requirements :strips :typing :action-costs)", ""]
     for section, added in merged.items():
         lines += [f"({section}", *(f"  {words}" for words in added if words), ")", ""]
     return "\n".join([*lines, "\n\n".join(actions), ")", ""])

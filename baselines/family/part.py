@@ -66,8 +66,12 @@ class Part(ABC):
         return allowed(FAMILY[self.kind], instance, options)
 
     def file(self, instance: Instance, options: PlanOptions) -> str:
-        """Return the name of the file in `domains/parts`, without its ending."""
+        """Return the name of its text: of the file in `domains/parts`, without its ending."""
         return self.kind
+
+    def text(self, instance: Instance, options: PlanOptions) -> str:
+        """Return its PDDL text: types, predicates and functions, then actions after a line `; --- …`."""
+        return (PARTS / f"{self.file(instance, options)}.pddl").read_text(encoding="utf-8")
 
     def objects(self, telling: Telling) -> Mapping[str, tuple[str, ...]]:
         """Return the objects that it adds, by type."""
@@ -100,11 +104,6 @@ class Part(ABC):
         """
 
 
-def part_text(file: str) -> str:
-    """Return the PDDL text of a part."""
-    return (PARTS / f"{file}.pddl").read_text(encoding="utf-8")
-
-
-def step_names(file: str) -> list[str]:
-    """Return the names of the PDDL actions of a part."""
-    return re.findall(r"^\(:action\s+(\S+)", part_text(file), re.MULTILINE)
+def step_names(text: str) -> list[str]:
+    """Return the names of the PDDL actions in a part's text."""
+    return re.findall(r"^\(:action\s+(\S+)", text, re.MULTILINE)

@@ -9,7 +9,8 @@
   (may-lift ?k - count)             ; it may come down ?k blocks further
   (lifted ?b - block ?from - spot)  ; ?b is in the air, the lowest of what is lifted, taken at ?from
   (crown ?b - block)                ; ?b is the uppermost of what is lifted
-  (landed ?r - region))             ; the lifted blocks stand in region ?r
+  (landed ?r - region)              ; the lifted blocks stand in region ?r
+)
 
 (:functions (lift-cost ?from ?to - spot) - number)
 

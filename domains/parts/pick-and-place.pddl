@@ -23,12 +23,14 @@
   (next ?k ?more - count)           ; ?more = ?k + 1
   (hand-empty)
   (idle)                            ; no action that is told in several steps is under way
-  (holding ?b - block ?from - spot)) ; ?b is in the hand, taken at ?from
+  (holding ?b - block ?from - spot) ; ?b is in the hand, taken at ?from
+)
 
 (:functions
   (total-cost) - number
   (pick-cost) - number
-  (place-cost ?from ?to - spot) - number) ; the way included
+  (place-cost ?from ?to - spot) - number ; the way included
+)
 
 ; --- pick.
 

@@ -5,7 +5,8 @@
   (topples ?r - region)             ; piles of region ?r can be toppled: those of stack locations
   (edge ?b - block ?r - region)     ; a topple is under way in region ?r and has come down to ?b
   (cap ?k - count)                  ; ?k blocks may fall after the first one of a topple
-  (may-fall ?k - count))            ; ?k more blocks may fall in the topple under way
+  (may-fall ?k - count)             ; ?k more blocks may fall in the topple under way
+)
 
 (:functions (topple-cost) - number)
 

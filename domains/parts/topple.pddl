@@ -3,7 +3,8 @@
 
 (:predicates
   (topples ?r - region)             ; piles of region ?r can be toppled: those of stack locations
-  (edge ?b - block ?r - region))    ; a topple is under way in region ?r and has come down to ?b
+  (edge ?b - block ?r - region)     ; a topple is under way in region ?r and has come down to ?b
+)
 
 (:functions (topple-cost) - number)
 
