@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 from typing import NoReturn
 
 from smash.problem.errors import MalformedFile
 from smash.problem.family import FAMILY
 from smash.problem.model import TABLE, Carrier, Instance, OnGoal, PositionsGoal, StacksGoal
+
+MOST_COST = 1_000_000
+"""Highest cost of an action, and of a metre: sums of shares must stay exact in floating point."""
+FARTHEST = 1000
+"""Farthest that a place may be from the origin [m]."""
 
 
 class InstanceChecker:
@@ -86,17 +90,17 @@ class InstanceChecker:
         for name, cost in costs.actions.items():
             if name not in known:
                 self.refuse("costs.actions", f"{name!r} is not allowed; one of {', '.join(known)}")
-            if cost < 1:
-                self.refuse(f"costs.actions.{name}", f"{cost} is not allowed; 1 and more")
-        if not (math.isfinite(costs.travel) and costs.travel >= 0):
-            self.refuse("costs.travel", f"{costs.travel} is not allowed; 0 and more")
+            if not 1 <= cost <= MOST_COST:
+                self.refuse(f"costs.actions.{name}", f"{cost} is not allowed; 1 to {MOST_COST:,}")
+        if not 0 <= costs.travel <= MOST_COST:
+            self.refuse("costs.travel", f"{costs.travel} is not allowed; 0 to {MOST_COST:,}")
         stations = [station for carrier in self.instance.carriers for station in carrier.stations]
         places = dict.fromkeys([*self.instance.locations, TABLE, *stations])
         for place, position in costs.positions.items():
             if place not in places:
                 self.refuse("costs.positions", f"{place!r} is no place ({_listing(places)})")
-            if not all(map(math.isfinite, position)):
-                self.refuse(f"costs.positions.{place}", "a position is two finite numbers")
+            if not all(abs(part) <= FARTHEST for part in position):
+                self.refuse(f"costs.positions.{place}", f"a position is two numbers from -{FARTHEST} to {FARTHEST} [m]")
         missing = [place for place in places if place not in costs.positions]
         if costs.travel and missing:
             self.refuse("costs.positions", f"{missing[0]!r} is missing; travel costs need every place")

@@ -166,9 +166,10 @@ def test_a_stated_cost_that_is_not_the_plans_is_refused():
         ({"capacities": {"topple": 2}}, "one of lift"),
         ({"capacities": {"lift": 0}}, "1 and more"),
         ({"costs": Costs({"fly": 1})}, "'fly' is not allowed"),
-        ({"costs": Costs({"pick": 0})}, "1 and more"),
+        ({"costs": Costs({"pick": 0})}, "1 to 1,000,000"),
         ({"costs": Costs(travel=1.0)}, "is missing"),
-        ({"costs": Costs(travel=float("nan"))}, "0 and more"),
+        ({"costs": Costs(travel=float("nan"))}, "0 to 1,000,000"),
+        ({"costs": Costs(positions={"s1": (float("inf"), 0)})}, "two numbers from -1000 to 1000"),
         ({"costs": Costs(positions={"moon": (0, 0)})}, "'moon' is no place"),
     ],
 )
