@@ -2,24 +2,13 @@
 
 from __future__ import annotations
 
-from math import sqrt
-
 import pandas as pd
 
 from analysis.readings import SETTING
+from analysis.statistics import wilson
 
 CELL = ["label", "suite", "buffers", "budget"]
 PROBLEM = ["instance", "seed"]
-
-
-def wilson(successes: int, trials: int, z: float = 1.96) -> tuple[float, float]:
-    """Return the Wilson score interval of a proportion (95 % for the default z); (0, 1) without a trial."""
-    if trials == 0:
-        return 0.0, 1.0
-    share = successes / trials
-    middle = (share + z * z / (2 * trials)) / (1 + z * z / trials)
-    half = z * sqrt(share * (1 - share) / trials + z * z / (4 * trials * trials)) / (1 + z * z / trials)
-    return max(0.0, middle - half), min(1.0, middle + half)
 
 
 def variant_cells(read: pd.DataFrame) -> pd.DataFrame:

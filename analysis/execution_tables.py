@@ -7,16 +7,14 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
-from analysis.cells import wilson
 from analysis.paper_tables import METRICS, PAPER, SIZES, Metric
 from analysis.records import NoRecords, read_lines
-from analysis.tables import markdown, mean_std
+from analysis.statistics import paired, wilson
+from analysis.tables import markdown, mean_std, share
 
 FORMAT = "smash-episode-run/1"
-RESAMPLES = 5000
 TIMES = ("offline", "offline_cpu", "online", "online_cpu", "execution", "task")
 LEGEND = (
     "Cells: mean ± std (median) over instances; success with its 95 % Wilson interval; the paper: mean ± std. "
@@ -107,40 +105,33 @@ def _cell(group: pd.DataFrame, metric: Metric) -> str:
 
 def paired_table(episodes: pd.DataFrame) -> pd.DataFrame:
     """Return execution time saved by topple: paired by instance, seed, planner and policy, both successful."""
-    keys = ["benchmark", "blocks", "label", "policy", "instance", "seed"]
-    done = episodes[episodes["success"]].set_index(keys)
-    without = done[done["variant"] == WITHOUT]["execution"]
+    setting, problem = ["benchmark", "blocks", "label", "policy"], ["instance", "seed"]
+    done = episodes.assign(solved=episodes["success"])[[*setting, *problem, "variant", "solved", "execution"]]
+    without = dict(list(done[done["variant"] == WITHOUT].groupby(setting)))
     rows = []
-    for variant, part in done[done["variant"] != WITHOUT].groupby("variant"):
-        pairs = pd.concat({"with": part["execution"], "without": without}, axis=1).dropna().reset_index()
-        for (benchmark, blocks, label, policy), group in pairs.groupby(["benchmark", "blocks", "label", "policy"]):
-            each = group.groupby("instance")[["with", "without"]].mean()
-            saved = (each["without"] - each["with"]).to_numpy(dtype=float)
-            share_saved = 100.0 * (1.0 - each["with"].sum() / each["without"].sum())
-            low, high = bootstrap(saved)
-            rows.append(
-                {
-                    "benchmark": benchmark,
-                    "blocks": blocks,
-                    "planner": label,
-                    "variant": variant,
-                    "policy": policy,
-                    "instances": len(each),
-                    "without [s]": f"{each['without'].mean():.1f}",
-                    "saved [s], mean [95 %]": f"{saved.mean():.1f} [{low:.1f}, {high:.1f}]",
-                    "saved [%]": f"{share_saved:.0f}",
-                    "topple faster in": f"{int((saved > 0).sum())}/{len(each)}",
-                }
-            )
+    for (variant, *key), part in done[done["variant"] != WITHOUT].groupby(["variant", *setting]):
+        if tuple(key) not in without:
+            continue
+        pair = paired(without[tuple(key)], part, problem, ["instance"], "execution")
+        low, high = pair.interval
+        benchmark, blocks, label, policy = key
+        rows.append(
+            {
+                "benchmark": benchmark,
+                "blocks": blocks,
+                "planner": label,
+                "variant": variant,
+                "policy": policy,
+                "success without": share(pair.left_solved, pair.problems),
+                "success with": share(pair.right_solved, pair.problems),
+                "instances": pair.units,
+                "without [s]": f"{pair.left_mean:.1f}" if pair.units else "–",
+                "saved [s], mean [95 %]": f"{pair.mean:.1f} [{low:.1f}, {high:.1f}]" if pair.units else "–",
+                "saved [%]": f"{100 * (1 - 1 / pair.ratio):.0f}" if pair.ratio > 0 else "–",
+                "topple faster in": f"{pair.tally[0]}/{pair.units}",
+            }
+        )
     return pd.DataFrame(rows)
-
-
-def bootstrap(values: np.ndarray[Any, np.dtype[np.float64]], seed: int = 0) -> tuple[float, float]:
-    """Return the 95 % percentile bootstrap interval of the mean."""
-    generator = np.random.default_rng(seed)
-    means = generator.choice(values, (RESAMPLES, len(values))).mean(axis=1)
-    low, high = np.percentile(means, [2.5, 97.5])
-    return float(low), float(high)
 
 
 def failure_table(episodes: pd.DataFrame) -> pd.DataFrame:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pandas as pd
 
-from analysis.cells import wilson
+from analysis.statistics import wilson
 
 
 def mean_std(values: pd.Series[float], digits: int = 2) -> str:

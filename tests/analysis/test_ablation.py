@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from analysis.ablation import make
-from analysis.cells import matched_cells, variant_cells, wilson
+from analysis.cells import matched_cells, variant_cells
 from analysis.findings import findings, smallest_buffers
 from analysis.readings import cutoff_check, readings
 from analysis.records import NoRecords, incumbents_table, read_records, runs_table
@@ -82,12 +82,6 @@ def test_real_cutoffs_are_compared_with_the_reading():
     assert "mean difference (cut off - read) +1.00" in findings(
         variant_cells(readings(runs)), matched_cells(readings(runs)), check
     )
-
-
-def test_wilson_interval_of_nothing_and_of_all():
-    assert wilson(0, 0) == (0.0, 1.0)
-    low, high = wilson(20, 20)
-    assert (round(low, 3), high) == (0.839, 1.0)
 
 
 @pytest.mark.parametrize("variants", [("topple", "no-topple"), pytest.param(("topple",), marks=pytest.mark.slow)])

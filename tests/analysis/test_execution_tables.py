@@ -1,9 +1,8 @@
 import json
 
-import numpy as np
 import pytest
 
-from analysis.execution_tables import bootstrap, failure_table, make, metric_table, paired_table, read_episodes
+from analysis.execution_tables import failure_table, make, metric_table, paired_table, read_episodes
 from analysis.records import NoRecords
 
 
@@ -80,9 +79,3 @@ def test_tables_are_written_as_markdown_and_latex(results):
 def test_without_records_there_is_one_line(tmp_path):
     with pytest.raises(NoRecords, match="cannot be read"):
         read_episodes(tmp_path)
-
-
-def test_the_bootstrap_interval_holds_the_mean():
-    values = np.array([1.0, 2.0, 3.0, 4.0])
-    low, high = bootstrap(values)
-    assert 1.0 <= low < 2.5 < high <= 4.0

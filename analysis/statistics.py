@@ -1,0 +1,126 @@
+"""Statistics that are fair to subsets: intervals, and comparisons of two sides on what both of them solved.
+
+A mean over the problems that one planner solved and a mean over those that another solved are means over different
+problems. Everything that compares two sides here is therefore paired, and carries its coverage with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import nan, sqrt
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+RESAMPLES = 5000
+"""Draws of a bootstrap: the interval's ends then move by less than the digits that are shown."""
+
+Values = np.ndarray[Any, np.dtype[np.float64]]
+
+
+def wilson(successes: int, trials: int, z: float = 1.96) -> tuple[float, float]:
+    """Return the Wilson score interval of a proportion (95 % for the default z); (0, 1) without a trial."""
+    if trials == 0:
+        return 0.0, 1.0
+    share = successes / trials
+    middle = (share + z * z / (2 * trials)) / (1 + z * z / trials)
+    half = z * sqrt(share * (1 - share) / trials + z * z / (4 * trials * trials)) / (1 + z * z / trials)
+    return max(0.0, middle - half), min(1.0, middle + half)
+
+
+def bootstrap(values: Values, seed: int = 0) -> tuple[float, float]:
+    """Return the 95 % percentile bootstrap interval of the mean of `values` (n,); (nan, nan) without a value."""
+    return _interval(len(values), lambda drawn: values[drawn].mean(axis=1), seed)
+
+
+def bootstrap_ratio(above: Values, below: Values, seed: int = 0) -> tuple[float, float]:
+    """Return the 95 % interval of sum(above) / sum(below), pairs (n,) and (n,) drawn together."""
+    return _interval(len(above), lambda drawn: above[drawn].sum(axis=1) / below[drawn].sum(axis=1), seed)
+
+
+def _interval(count: int, statistic: Callable[[np.ndarray[Any, Any]], Values], seed: int) -> tuple[float, float]:
+    if count == 0:
+        return nan, nan
+    drawn = np.random.default_rng(seed).integers(0, count, (RESAMPLES, count))
+    low, high = np.percentile(statistic(drawn), [2.5, 97.5])
+    return float(low), float(high)
+
+
+@dataclass(frozen=True, slots=True)
+class Paired:
+    """Two sides, `left` and `right`, on the same problems.
+
+    Attributes:
+        problems: Problems that both sides tried.
+        left_solved: How many of them the left side solved; `right_solved` likewise.
+        units: What the figures below count: instances on which both sides solved something in common.
+        differences: left - right, one a unit (n,): the mean over the unit's common problems (seeds, say).
+        left_mean: Mean of the left side over the units; `right_mean` likewise: the same problems on both sides.
+        interval: 95 % bootstrap interval of the mean difference, units drawn.
+        ratio: left_mean / right_mean, nan where right_mean is 0.
+        ratio_interval: its 95 % bootstrap interval; nan where a unit of the right side is 0.
+    """
+
+    problems: int
+    left_solved: int
+    right_solved: int
+    differences: Values
+    left_mean: float
+    right_mean: float
+    interval: tuple[float, float]
+    ratio: float
+    ratio_interval: tuple[float, float]
+
+    @property
+    def units(self) -> int:
+        """The number of differences."""
+        return len(self.differences)
+
+    @property
+    def mean(self) -> float:
+        """Mean difference; nan without a common unit."""
+        return float(self.differences.mean()) if self.units else nan
+
+    @property
+    def quartiles(self) -> tuple[float, float, float]:
+        """First quartile, median and third quartile of the differences; nan without a common unit."""
+        if not self.units:
+            return nan, nan, nan
+        low, middle, high = np.percentile(self.differences, [25, 50, 75])
+        return float(low), float(middle), float(high)
+
+    @property
+    def tally(self) -> tuple[int, int, int]:
+        """Units in which the left side is greater, equal, smaller."""
+        return int((self.differences > 0).sum()), int((self.differences == 0).sum()), int((self.differences < 0).sum())
+
+
+def paired(left: pd.DataFrame, right: pd.DataFrame, problem: Sequence[str], unit: Sequence[str], value: str) -> Paired:
+    """Compare two sides on the problems that both solved.
+
+    Args:
+        left: one row a problem, with the columns of `problem`, `solved` (bool) and `value`.
+        right: likewise.
+        problem: columns that name a problem; only those in both tables count.
+        unit: those of them that name what is drawn by the bootstrap (the instance): seeds of one instance are no
+            independent evidence.
+        value: column that is compared where both are solved.
+    """
+    pairs = left.merge(right, on=list(problem), suffixes=("_left", "_right"))
+    both = pairs[pairs["solved_left"] & pairs["solved_right"]]
+    columns = [f"{value}_left", f"{value}_right"]
+    each = both.groupby(list(unit))[columns].mean().to_numpy(dtype=float).reshape(-1, 2)
+    first, second = each[:, 0], each[:, 1]
+    return Paired(
+        problems=len(pairs),
+        left_solved=int(pairs["solved_left"].sum()),
+        right_solved=int(pairs["solved_right"].sum()),
+        differences=first - second,
+        left_mean=float(first.mean()) if len(each) else nan,
+        right_mean=float(second.mean()) if len(each) else nan,
+        interval=bootstrap(first - second),
+        ratio=float(first.sum() / second.sum()) if second.sum() > 0 else nan,
+        ratio_interval=bootstrap_ratio(first, second) if (second > 0).all() else (nan, nan),
+    )
