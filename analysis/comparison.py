@@ -15,7 +15,7 @@ from typing import Any
 import pandas as pd
 
 from analysis.conditions import conditions
-from analysis.curves import anytime_figure, coverage_figure
+from analysis.curves import anytime_chart, coverage_chart
 from analysis.metrics import PREFIX, metric_names
 from analysis.records import NoRecords, read_records, runs_table
 from analysis.tables import markdown, mean_std, median_iqr, share
@@ -160,8 +160,8 @@ def make(results: Path, out: Path, keys: Collection[str] | None = None) -> list[
     ]
     files.append(out / "comparison.md")
     files[-1].write_text("\n".join(page), encoding="utf-8")
-    for name, draw in (("anytime", anytime_figure), ("coverage", coverage_figure)):
-        figure = draw(records)
+    for name, draw in (("anytime", anytime_chart), ("coverage", coverage_chart)):
+        figure = draw(records).figure()
         for ending in ("png", "pdf"):
             files.append(out / f"{name}.{ending}")
             figure.savefig(files[-1], dpi=200)

@@ -8,22 +8,27 @@ from typing import Any
 
 
 def conditions(records: list[dict[str, Any]]) -> str:
-    """Return the conditions as Markdown; a machine that was busy with other work is said to have been."""
-    lines = ["", "## Conditions", "", f"- {len(records)} runs; {_commits(records)}"]
+    """Return the conditions as Markdown."""
+    return "\n".join(["", "## Conditions", "", *(f"- {line}" for line in condition_lines(records))]) + "\n"
+
+
+def condition_lines(records: list[dict[str, Any]]) -> list[str]:
+    """Return the conditions, a sentence each; a machine that was busy with other work is said to have been."""
+    lines = [f"{len(records)} runs; {_commits(records)}"]
     machines = Counter(_machine(record) for record in records)
-    lines += [f"- {count} runs on {machine}" for machine, count in machines.most_common()]
+    lines += [f"{count} runs on {machine}" for machine, count in machines.most_common()]
     loads = [record["load_average"][0] for record in records if record.get("load_average")]
     if loads:
         busy = sum(_busy(record) for record in records)
         lines.append(
-            f"- load average {median(loads):.1f} (median), {max(loads):.1f} (most); {busy} runs began while it was "
+            f"load average {median(loads):.1f} (median), {max(loads):.1f} (most); {busy} runs began while it was "
             "above the number of cores by 1 or more: their times are longer than on a quiet machine"
         )
     stopped = Counter(record["label"] for record in records if record["outcome"] == "over-budget")
     if stopped:
         words = ", ".join(f"{label} {count}" for label, count in stopped.most_common())
-        lines.append(f"- stopped beyond budget and grace (plans reported by then count): {words}")
-    return "\n".join(lines) + "\n"
+        lines.append(f"stopped beyond budget and grace (plans reported by then count): {words}")
+    return lines
 
 
 def _commits(records: list[dict[str, Any]]) -> str:

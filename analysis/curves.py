@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from analysis.charts import Chart, Curve, Panel, curves
 from analysis.records import legal_trace
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8C8C00")
-DASHES = ("-", "--", "-.", ":")
-"""Okabe and Ito's colours for every kind of colour vision; line styles tell curves apart in grey."""
 EARLIEST = 0.01
 """Where the time axis begins [s]."""
+WIDEST_GAP = 100.0
+"""Where the axis of gaps ends [%]."""
 
 Record = dict[str, Any]
 
@@ -55,71 +54,85 @@ def best_known(records: list[Record]) -> dict[tuple[str, str], int]:
     return best
 
 
-def coverage_figure(records: list[Record]) -> Figure:
-    """Draw coverage over time, a panel per suite and variant, a curve per planner."""
-
-    def draw(axis: Axes, mine: list[Record], times: np.ndarray, style: dict[str, Any]) -> None:
-        axis.step(times, 100 * coverage_curve(mine, times), where="post", **style)
-
-    return _panels(records, draw, "problems with a plan [%]")
+def coverage_chart(records: list[Record]) -> Chart:
+    """Return coverage over time, a panel per suite and variant, a curve per planner."""
+    return _over_time(records, coverage_curve, "problems with a plan [%]")
 
 
-def anytime_figure(records: list[Record]) -> Figure:
-    """Draw the quality of the best plan so far over time, a panel per suite and variant, a curve per planner."""
+def anytime_chart(records: list[Record]) -> Chart:
+    """Return the quality of the best plan so far over time, a panel per suite and variant, a curve per planner."""
     best = best_known(records)
-
-    def draw(axis: Axes, mine: list[Record], times: np.ndarray, style: dict[str, Any]) -> None:
-        axis.step(times, 100 * quality_curve(mine, best, times), where="post", **style)
-
-    return _panels(records, draw, "quality [%]: best known cost / cost,\n0 without a plan, mean over all problems")
+    words = "quality [%]: best known cost / cost,\n0 without a plan, mean over all problems"
+    return _over_time(records, lambda mine, times: quality_curve(mine, best, times), words)
 
 
-def _panels(records: list[Record], draw: Any, words: str) -> Figure:
-    import matplotlib as mpl
-    from matplotlib.figure import Figure
+def gap_chart(records: list[Record], optima: Mapping[tuple[str, str], int]) -> Chart:
+    """Return the share of problems within a gap to the proven optimum, a panel per suite and variant.
 
-    mpl.rcParams.update({"font.size": 8, "axes.titlesize": 9, "pdf.fonttype": 42})
-    suites, variants = _distinct(records, "suite"), _distinct(records, "variant")
-    labels = _distinct(records, "label")
-    styles = {
-        label: {
-            "color": COLOURS[i % len(COLOURS)],
-            "linestyle": DASHES[(i + i // len(COLOURS)) % len(DASHES)],
-            "lw": 1.7,
-        }
-        for i, label in enumerate(labels)
-    }
-    figure = Figure(figsize=(3.4 * len(variants) + 1.6, 2.5 * len(suites) + 0.5), layout="constrained")
-    axes = figure.subplots(len(suites), len(variants), squeeze=False, sharey=True)
-    for row, suite in enumerate(suites):
-        for column, variant in enumerate(variants):
-            axis = axes[row][column]
-            part = [r for r in records if r["suite"] == suite and r["variant"] == variant]
-            times = np.geomspace(EARLIEST, max([r["budget"] for r in part], default=1.0), 400)
-            for label, mine in _by_label(part, labels):
-                draw(axis, mine, times, {**styles[label], "label": label})
-            axis.set_xscale("log")
-            axis.set_xlim(EARLIEST, times[-1])
-            axis.set_ylim(-2, 103)
-            axis.xaxis.set_major_formatter("{x:g}")
-            axis.set_title(f"{suite}, {variant}")
-            axis.grid(color="#dddddd", linewidth=0.6)
-            axis.spines[["top", "right"]].set_visible(False)
-    for axis in axes[-1]:
-        axis.set_xlabel("time since the call [s]")
-    for row in range(len(suites)):
-        axes[row][0].set_ylabel(words)
-    lines = {line.get_label(): line for axis in axes.flat for line in axis.get_lines()}
-    figure.legend(lines.values(), lines.keys(), loc="outside right upper", frameon=False)
-    return figure
+    Every problem counts that the planner tried and whose optimum some planner has proven; one without a plan is within
+    no gap, so that all planners stand on the same problems.
+
+    Args:
+        records: one run a planner and problem.
+        optima: proven costs by (instance hash, variant).
+    """
+    known = [r for r in records if optima.get((r["instance_hash"], r["variant"]), 0) > 0]
+    gaps = np.linspace(0.0, WIDEST_GAP, 201)
+
+    def draw(axis: Axes, mine: list[Record], curve: Curve) -> None:
+        axis.plot(gaps, 100 * gap_curve(mine, optima, gaps / 100), lw=1.7, **curve.style())
+        axis.set_xlim(-1, WIDEST_GAP)
+        axis.set_ylim(-2, 103)
+
+    return _chart(known, draw, "cost above the proven optimum [%], at most", "problems [%]")
+
+
+def gap_curve(records: list[Record], optima: Mapping[tuple[str, str], int], gaps: np.ndarray) -> np.ndarray:
+    """Return the share of runs whose best plan costs at most (1 + gap) times the optimum; gaps (n,), result (n,)."""
+    over = []
+    for record in records:
+        trace = legal_trace(record)
+        over.append(trace[-1][1] / optima[record["instance_hash"], record["variant"]] - 1 if trace else np.inf)
+    within: np.ndarray = np.array(over)[:, None] <= gaps[None, :] + 1e-9
+    return within.mean(axis=0) if len(records) else np.zeros(len(gaps))
+
+
+def _over_time(records: list[Record], measure: Callable[[list[Record], np.ndarray], np.ndarray], words: str) -> Chart:
+    longest: dict[tuple[str, str], float] = {}
+    for record in records:
+        panel = record["suite"], record["variant"]
+        longest[panel] = max(longest.get(panel, 0.0), record["budget"])
+
+    def draw(axis: Axes, mine: list[Record], curve: Curve) -> None:
+        times = np.geomspace(EARLIEST, max(longest[mine[0]["suite"], mine[0]["variant"]], 2 * EARLIEST), 400)
+        axis.step(times, 100 * measure(mine, times), where="post", lw=1.7, **curve.style())
+        axis.set_xscale("log")
+        axis.set_xlim(EARLIEST, times[-1])
+        axis.set_ylim(-2, 103)
+        axis.xaxis.set_major_formatter("{x:g}")
+
+    return _chart(records, draw, "time since the call [s]", words)
+
+
+def _chart(records: list[Record], draw: Callable[[Axes, list[Record], Curve], None], across: str, upward: str) -> Chart:
+    legend = curves(_distinct(records, "label"))
+
+    def panel(suite: str, variant: str) -> Panel:
+        part = [r for r in records if r["suite"] == suite and r["variant"] == variant]
+        sides = [(curve, mine) for curve in legend if (mine := [r for r in part if r["label"] == curve.name])]
+
+        def fill(axis: Axes) -> None:
+            for curve, mine in sides:
+                draw(axis, mine, curve)
+
+        words = ", ".join(
+            f"{curve.name}: {sum(map(bool, map(legal_trace, mine)))}/{len(mine)}" for curve, mine in sides
+        )
+        return Panel(f"{suite}, {variant}", fill, f"{upward} over {across}; with a plan at the end: {words}")
+
+    variants = _distinct(records, "variant")
+    return Chart([[panel(suite, v) for v in variants] for suite in _distinct(records, "suite")], across, upward, legend)
 
 
 def _distinct(records: list[Record], field: str) -> list[str]:
     return list(dict.fromkeys(record[field] for record in records))
-
-
-def _by_label(records: list[Record], labels: list[str]) -> Iterator[tuple[str, list[Record]]]:
-    for label in labels:
-        mine = [record for record in records if record["label"] == label]
-        if mine:
-            yield label, mine

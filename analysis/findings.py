@@ -38,9 +38,19 @@ def findings(cells: pd.DataFrame, matched: pd.DataFrame, check: pd.DataFrame) ->
     ]
     for (label, suite), part in cells.groupby(["label", "suite"]):
         pairs = matched[(matched["label"] == label) & (matched["suite"] == suite)]
-        lines += ["", f"## {label} on {suite}", "", *_thresholds(part), *_ratios(pairs)]
-    lines += ["", "## Reading one anytime run at smaller budgets, against real cut-offs", "", *_check(check)]
+        lines += ["", f"## {label} on {suite}", "", *(f"- {line}" for line in planner_findings(part, pairs))]
+    lines += [
+        "",
+        "## Reading one anytime run at smaller budgets, against real cut-offs",
+        "",
+        *(f"- {line}" for line in cutoff_findings(check)),
+    ]
     return "\n".join(lines) + "\n"
+
+
+def planner_findings(cells: pd.DataFrame, pairs: pd.DataFrame) -> list[str]:
+    """Return what one planner's cells of one suite say, a sentence each: B90 per variant, the range of the ratio."""
+    return [*_thresholds(cells), *_ratios(pairs)]
 
 
 def _thresholds(cells: pd.DataFrame) -> Iterator[str]:
@@ -51,7 +61,7 @@ def _thresholds(cells: pd.DataFrame) -> Iterator[str]:
         at_most = smallest_buffers(part, every_budget=False)
         always = smallest_buffers(part, every_budget=True)
         yield (
-            f"- {variant}: B90 = {_or_none(at_most)} at {max(budgets):g} s, {_or_none(always)} at every budget from "
+            f"{variant}: B90 = {_or_none(at_most)} at {max(budgets):g} s, {_or_none(always)} at every budget from "
             f"{min(budgets):g} s (B tried: {tried})"
         )
 
@@ -65,27 +75,28 @@ def _ratios(pairs: pd.DataFrame) -> Iterator[str]:
         return
     shared = pairs.dropna(subset=["ratio_common"])
     if shared.empty:
-        yield "- action ratio: no cell in which both variants solved one same instance"
+        yield "action ratio: no cell in which both variants solved one same instance"
     else:
         fewest, most = shared["common"].min(), shared["common"].max()
         yield (
-            f"- action ratio on instances that both solved: {_span(shared['ratio_common'])} over {len(shared)} of "
+            f"action ratio on instances that both solved: {_span(shared['ratio_common'])} over {len(shared)} of "
             f"{len(pairs)} cells ({fewest} to {most} instances a cell)"
         )
         yield (
-            f"- action ratio of the two means over all that each solved (different subsets, as two heatmaps are "
+            f"action ratio of the two means over all that each solved (different subsets, as two heatmaps are "
             f"divided): {_span(pairs['ratio_all'].dropna())}"
         )
     alone = ((pairs["solved_with"] > 0) & (pairs["solved_without"] == 0)).sum()
     reverse = ((pairs["solved_with"] == 0) & (pairs["solved_without"] > 0)).sum()
-    yield f"- cells with plans with topple alone: {alone}; without topple alone: {reverse}"
+    yield f"cells with plans with topple alone: {alone}; without topple alone: {reverse}"
 
 
 def _span(ratios: pd.Series[float]) -> str:
     return f"{ratios.min():.2f} to {ratios.max():.2f}, median {ratios.median():.2f}"
 
 
-def _check(check: pd.DataFrame) -> Iterator[str]:
+def cutoff_findings(check: pd.DataFrame) -> Iterator[str]:
+    """Yield per planner how often real cut-offs agree with what one anytime run says about that budget."""
     if check.empty:
         yield "No run was repeated with real cut-offs."
         return
@@ -99,4 +110,4 @@ def _check(check: pd.DataFrame) -> Iterator[str]:
             if len(both)
             else "none solved in both"
         )
-        yield f"- {label}: {len(part)} cut-offs, success the same in {same.sum()}; {costs}"
+        yield f"{label}: {len(part)} cut-offs, success the same in {same.sum()}; {costs}"

@@ -12,7 +12,7 @@ from analysis.cells import grid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.colors import Colormap, Normalize
+    from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
 SUCCESS_COLOURS = "cividis"
@@ -112,7 +112,7 @@ def _heatmap(
             axis.add_patch(box)
             axis.text(column, row, empty, ha="center", va="center", fontsize=5, color="#555555", bbox=_PAPER)
         else:
-            colour = _ink(colormap, scale, value)
+            colour = ink(*colormap(scale(value))[:3])
             axis.text(column, row, words(value), ha="center", va="center", fontsize=7, color=colour)
     axis.figure.colorbar(image, ax=axis, fraction=0.05, pad=0.02).outline.set_visible(False)
 
@@ -120,6 +120,8 @@ def _heatmap(
 _PAPER = {"facecolor": "#f4f4f4", "edgecolor": "none", "pad": 0.6}
 
 
-def _ink(colormap: Colormap, scale: Normalize, value: float) -> str:
-    red, green, blue, _ = colormap(scale(value))
-    return "black" if 0.299 * red + 0.587 * green + 0.114 * blue > 0.5 else "white"
+def ink(red: float, green: float, blue: float) -> str:
+    """Return black or white, whichever has more contrast (WCAG 2) on a colour of parts from 0 to 1: at least 4.58."""
+    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in (red, green, blue)]
+    luminance = 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+    return "black" if (luminance + 0.05) ** 2 > 1.05 * 0.05 else "white"

@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from analysis.curves import COLOURS, DASHES
+from analysis.charts import Chart, Panel, curves
 from analysis.records import NoRecords, read_records, runs_table
 from analysis.tables import markdown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 PAPERS_FIRST_FEASIBLE = {4: (0.13, 0.22), 6: (0.49, 0.66), 9: (2.8, 3.9)}
 """Blocks -> seconds to the first feasible solution that the paper reports (Gurobi, least and most of its settings)."""
+PAPERS_BARS = "paper, Gurobi, first feasible"
 GROUP = ["label", "variant", "room"]
 MEASURES = {"first_seconds": "first plan", "proof_seconds": "proven optimum"}
 
@@ -85,53 +85,37 @@ def exponent_table(cells: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def scaling_figure(cells: pd.DataFrame, column: str) -> Figure:
-    """Draw median seconds over blocks on log axes: a panel per variant and room, a curve per planner."""
-    import matplotlib as mpl
-    from matplotlib.figure import Figure
-
-    mpl.rcParams.update({"font.size": 8, "axes.titlesize": 9, "pdf.fonttype": 42})
+def scaling_chart(cells: pd.DataFrame, column: str) -> Chart:
+    """Return median seconds over blocks on log axes: a panel per variant and room, a curve per planner."""
     variants, rooms = sorted(cells["variant"].unique()), sorted(cells["room"].unique())
-    labels = sorted(cells["label"].unique())
-    figure = Figure(figsize=(2.9 * len(rooms) + 1.6, 2.5 * len(variants) + 0.4), layout="constrained")
-    axes = figure.subplots(len(variants), len(rooms), squeeze=False, sharex=True, sharey=True)
-    for row, variant in enumerate(variants):
-        for at, room in enumerate(rooms):
-            axis = axes[row][at]
-            for number, label in enumerate(labels):
-                part = cells[(cells["variant"] == variant) & (cells["room"] == room) & (cells["label"] == label)]
-                axis.plot(
-                    part["blocks"],
-                    part[column],
-                    color=COLOURS[number % len(COLOURS)],
-                    linestyle=DASHES[number // len(COLOURS) % len(DASHES)],
-                    marker="o",
-                    markersize=3,
-                    lw=1.5,
-                    label=label,
-                )
+    legend = curves(sorted(cells["label"].unique()))
+
+    def panel(variant: str, room: str) -> Panel:
+        part = cells[(cells["variant"] == variant) & (cells["room"] == room)]
+
+        def draw(axis: Axes) -> None:
+            for curve in legend:
+                mine = part[part["label"] == curve.name]
+                axis.plot(mine["blocks"], mine[column], marker="o", markersize=3, lw=1.5, **curve.style())
             _mark_paper(axis)
             axis.set_xscale("log")
             axis.set_yscale("log")
             axis.xaxis.set_major_formatter("{x:g}")
             axis.yaxis.set_major_formatter("{x:g}")
-            words = "as many buffers as blocks" if room == "blocks" else f"{room} buffers"
-            axis.set_title(f"{variant}, {words}")
-            axis.grid(color="#dddddd", linewidth=0.6)
-            axis.spines[["top", "right"]].set_visible(False)
-    for axis in axes[-1]:
-        axis.set_xlabel("blocks")
-    for row in range(len(variants)):
-        axes[row][0].set_ylabel(f"{MEASURES[column]}, median [s]")
-    lines = {line.get_label(): line for line in axes[0][0].get_lines() if not str(line.get_label()).startswith("_")}
-    figure.legend(lines.values(), lines.keys(), loc="outside right upper", frameon=False)
-    return figure
+
+        words = "as many buffers as blocks" if room == "blocks" else f"{room} buffers"
+        return Panel(
+            f"{variant}, {words}", draw, f"{MEASURES[column]}, median seconds over blocks, both axes logarithmic"
+        )
+
+    rows = [[panel(variant, room) for room in rooms] for variant in variants]
+    return Chart(rows, "blocks", f"{MEASURES[column]}, median [s]", legend)
 
 
 def _mark_paper(axis: Axes) -> None:
     """Mark the paper's seconds to a first feasible solution as upright bars."""
     for number, (blocks, (least, most)) in enumerate(PAPERS_FIRST_FEASIBLE.items()):
-        name = "paper, Gurobi, first feasible" if number == 0 else "_"
+        name = PAPERS_BARS if number == 0 else "_"
         axis.plot([blocks, blocks], [least, most], color="black", lw=4, solid_capstyle="butt", alpha=0.55, label=name)
 
 
@@ -152,7 +136,7 @@ def make(results: Path, out: Path) -> list[Path]:
         shown[column] = [f"{value:.1f}" if math.isfinite(value) else "–" for value in shown[column]]
     files[1].write_text(f"{markdown(exponent_table(cells))}\n{markdown(shown)}", encoding="utf-8")
     for column in MEASURES:
-        figure = scaling_figure(cells, column)
+        figure = scaling_chart(cells, column).figure()
         for ending in ("png", "pdf"):
             files.append(out / f"{column.replace('_', '-')}.{ending}")
             figure.savefig(files[-1], dpi=200)
