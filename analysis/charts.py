@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -80,20 +80,21 @@ class Chart:
 
     def panel_figure(self, panel: Panel) -> Figure:
         """Draw one panel alone, with its own axis titles and without a legend."""
-        figure = _blank(*PANEL_SIZE)
+        figure = _blank(*PANEL_SIZE, layout=None)
         axis = figure.subplots()
+        figure.subplots_adjust(left=0.17, right=0.97, top=0.97, bottom=0.19)
         _draw(axis, replace(panel, title=""))
         axis.set_xlabel(self.across)
         axis.set_ylabel(self.upward)
         return figure
 
 
-def _blank(width: float, height: float) -> Figure:
+def _blank(width: float, height: float, layout: Literal["constrained"] | None = "constrained") -> Figure:
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
     mpl.rcParams.update({"font.size": 8, "axes.titlesize": 9, "pdf.fonttype": 42})
-    return Figure(figsize=(width, height), layout="constrained")
+    return Figure(figsize=(width, height), layout=layout)
 
 
 def _draw(axis: Axes, panel: Panel) -> None:

@@ -62,7 +62,7 @@ def coverage_chart(records: list[Record]) -> Chart:
 def anytime_chart(records: list[Record]) -> Chart:
     """Return the quality of the best plan so far over time, a panel per suite and variant, a curve per planner."""
     best = best_known(records)
-    words = "quality [%]: best known cost / cost,\n0 without a plan, mean over all problems"
+    words = "best known cost / cost, mean [%]"
     return _over_time(records, lambda mine, times: quality_curve(mine, best, times), words)
 
 

@@ -12,7 +12,7 @@ import pandas as pd
 from analysis.paper_tables import METRICS, PAPER, SIZES, Metric
 from analysis.records import NoRecords, read_lines
 from analysis.statistics import paired, wilson
-from analysis.tables import markdown, mean_std, share
+from analysis.tables import latex, markdown, mean_std, share
 
 FORMAT = "smash-episode-run/1"
 TIMES = ("offline", "offline_cpu", "online", "online_cpu", "execution", "task")
@@ -28,19 +28,25 @@ VARIANTS = {"topple": "w/ topple", "max-topple-4": "w/ topple ≤ 4", WITHOUT: "
 
 
 def read_episodes(results: Path) -> pd.DataFrame:
-    """Return one row an episode of `RESULTS/episodes.jsonl`.
-
-    Columns: those of the record that are plain values, and `benchmark` (single or multi), `success`, `failure` (name),
-    those of `TIMES` [s], `replans`, `retries`, `executed` (actions carried out).
+    """Return `episode_table` of `RESULTS/episodes.jsonl`.
 
     Raises:
         NoRecords: where there are none.
     """
     path = results / "episodes.jsonl"
-    rows = [_row(record) for record in read_lines(path, FORMAT)]
-    if not rows:
+    records = read_lines(path, FORMAT)
+    if not records:
         raise NoRecords(f"{path}: no finished episode")
-    return pd.DataFrame(rows)
+    return episode_table(records)
+
+
+def episode_table(records: list[dict[str, Any]]) -> pd.DataFrame:
+    """Return one row an episode.
+
+    Columns: those of the record that are plain values, and `benchmark` (single or multi), `success`, `failure` (name),
+    those of `TIMES` [s], `replans`, `retries`, `executed` (actions carried out).
+    """
+    return pd.DataFrame([_row(record) for record in records])
 
 
 def _row(record: dict[str, Any]) -> dict[str, Any]:
@@ -144,27 +150,6 @@ def failure_table(episodes: pd.DataFrame) -> pd.DataFrame:
         example = f"{first['instance']} seed {first['seed']}: {first['reason']}"
         rows.append({**dict(zip(columns, key, strict=True)), "episodes": len(group), "example": example})
     return pd.DataFrame(rows, columns=[*columns, "episodes", "example"])
-
-
-def latex(table: pd.DataFrame, title: str, label: str) -> str:
-    """Return a metric table as a LaTeX float in the paper's layout."""
-    columns = "ll" + "c" * (len(table.columns) - 2)
-    lines = [r"\begin{table*}[t]", r"\centering\small", rf"\begin{{tabular}}{{{columns}}}", r"\toprule"]
-    lines.append(" & ".join(_tex(str(column)) for column in table.columns) + r" \\")
-    last = ""
-    for row in table.itertuples(index=False):
-        cells = [str(cell) for cell in row]
-        lines += [r"\midrule"] if cells[0] != last else []
-        last, cells[0] = cells[0], "" if cells[0] == last else cells[0]
-        lines.append(" & ".join(_tex(cell) for cell in cells) + r" \\")
-    lines += [r"\bottomrule", r"\end{tabular}", rf"\caption{{{_tex(title)}}}", rf"\label{{{label}}}", r"\end{table*}"]
-    return "\n".join(lines) + "\n"
-
-
-def _tex(text: str) -> str:
-    for plain, written in (("%", r"\%"), ("_", r"\_"), ("±", r"$\pm$"), ("≤", r"$\le$"), ("–", "--")):
-        text = text.replace(plain, written)
-    return text
 
 
 def make(results: Path, out: Path) -> list[Path]:

@@ -17,9 +17,15 @@ SETTING = ["label", "suite", "buffers", "variant", "instance", "seed"]
 
 
 def readings(records: list[dict[str, Any]]) -> pd.DataFrame:
-    """Return one row per run and budget that it stands for: `SETTING`, budget, solved, cost (NaN), seconds."""
+    """Return one row per run and budget that it stands for: `SETTING`, budget, solved, cost (NaN), seconds, run.
+
+    `run` is the record's place in `records`.
+    """
     rows = [
-        _reading(record, budget) for record in records if record["kind"] != "cutoff" for budget in record["budgets"]
+        _reading(record, budget, run)
+        for run, record in enumerate(records)
+        if record["kind"] != "cutoff"
+        for budget in record["budgets"]
     ]
     return _table(rows)
 
@@ -29,17 +35,17 @@ def cutoff_check(records: list[dict[str, Any]]) -> pd.DataFrame:
 
     Columns: `SETTING`, budget, and solved, cost as read and as cut off (`_read`, `_cut`).
     """
-    cut = _table([_reading(record, record["budget"]) for record in records if record["kind"] == "cutoff"])
-    read = readings(records)
-    return read.merge(cut, on=[*SETTING, "budget"], suffixes=("_read", "_cut"))
+    rows = [_reading(r, r["budget"], run) for run, r in enumerate(records) if r["kind"] == "cutoff"]
+    return readings(records).merge(_table(rows), on=[*SETTING, "budget"], suffixes=("_read", "_cut"))
 
 
-def _reading(record: dict[str, Any], budget: float) -> dict[str, Any]:
+def _reading(record: dict[str, Any], budget: float, run: int) -> dict[str, Any]:
     within = [(seconds, cost) for seconds, cost in legal_trace(record) if seconds <= budget]
     setting = {name: record[name] for name in SETTING}
     seconds, cost = within[-1] if within else (float("nan"), float("nan"))
-    return {**setting, "budget": float(budget), "solved": bool(within), "cost": float(cost), "seconds": seconds}
+    reading = {"budget": float(budget), "solved": bool(within), "cost": float(cost), "seconds": seconds, "run": run}
+    return setting | reading
 
 
 def _table(rows: list[dict[str, Any]]) -> pd.DataFrame:
-    return pd.DataFrame(rows, columns=[*SETTING, "budget", "solved", "cost", "seconds"])
+    return pd.DataFrame(rows, columns=[*SETTING, "budget", "solved", "cost", "seconds", "run"])

@@ -68,3 +68,47 @@ def markdown(table: pd.DataFrame) -> str:
     head = [str(column) for column in table.columns]
     body = [[str(cell) for cell in row] for row in table.itertuples(index=False)]
     return "\n".join([line(head), line(["---"] * len(head)), *map(line, body)]) + "\n"
+
+
+LONG_TABLE = 40
+"""A table with more rows than this is broken over pages."""
+TEX = {
+    "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
+    "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "±": r"$\pm$", "≤": r"$\le$", "×": r"$\times$", "–": "--",
+    "✓": r"\checkmark", "“": "``", "”": "''", "…": r"\dots{}",
+}  # fmt: skip
+
+
+def tex(text: str) -> str:
+    """Return a text as LaTeX shows it as it stands."""
+    return "".join(TEX.get(letter, letter) for letter in text)
+
+
+def latex(table: pd.DataFrame, title: str, label: str) -> str:
+    """Return a table as LaTeX (booktabs), in the paper's layout: rows with the same first cell are one group.
+
+    A long one is a `longtable`, any other a float that is no wider than the text.
+    """
+    columns = "ll" + "c" * (len(table.columns) - 2)
+    head = " & ".join(tex(str(column)) for column in table.columns) + r" \\"
+    body: list[str] = []
+    last = ""
+    groups = table.iloc[:, 0].nunique() < len(table)
+    for row in table.itertuples(index=False):
+        cells = [str(cell) for cell in row]
+        if groups:
+            body += [r"\midrule"] if cells[0] != last and body else []
+            last, cells[0] = cells[0], "" if cells[0] == last else cells[0]
+        body.append(" & ".join(tex(cell) for cell in cells) + r" \\")
+    caption, mark = rf"\caption{{{tex(title)}}}", rf"\label{{{label}}}"
+    if len(body) > LONG_TABLE:
+        start = [r"\begingroup\tiny", rf"\begin{{longtable}}{{{columns}}}", rf"{caption}{mark} \\", r"\toprule", head]
+        start += [r"\midrule", r"\endhead"]
+        return "\n".join([*start, *body, r"\bottomrule", r"\end{longtable}", r"\endgroup"]) + "\n"
+    start = [
+        r"\begin{table*}[t]",
+        r"\centering\small",
+        r"\resizebox{\ifdim\width>\textwidth\textwidth\else\width\fi}{!}{%",
+    ]
+    start += [rf"\begin{{tabular}}{{{columns}}}", r"\toprule", head, r"\midrule"]
+    return "\n".join([*start, *body, r"\bottomrule", r"\end{tabular}}", caption, mark, r"\end{table*}"]) + "\n"

@@ -33,6 +33,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "frontier": ("smash.cli.frontier", "show what buffers buy: the exact cost against their number"),
     "sweep": ("smash.cli.sweep", "run an experiment file: planners, instances, budgets, buffers, variants"),
     "reproduce": ("smash.cli.reproduce", "make every table and figure from nothing, with a manifest"),
+    "report": ("smash.cli.report", "records as one page to read, and its parts for a paper"),
     "records": ("smash.cli.records", "check the records of a sweep, or write them as tables"),
     "best-known": ("smash.cli.best_known", "keep the list of best known costs of the open instances"),
     "submit-check": ("smash.cli.submit_check", "say whether a plan improves on the best known one"),

@@ -2,6 +2,14 @@
 
 import json
 
+DOCUMENT = {
+    "blocks": ["a", "<b>", "c"],
+    "stacks": ["s1", "s2"],
+    "buffers": ["u1"],
+    "start": {"s1": ["a", "<b>"], "s2": ["c"]},
+    "goal": {"kind": "stacks", "stacks": {"s1": ["c", "a", "<b>"]}},
+}
+
 
 def record(number=0, trace=(), *, budget=30.0, kind="anytime", variant="topple", buffers=0, label="p", **more):
     budgets = more.pop("budgets", [0.1, 1.0, 30.0] if kind == "anytime" else [budget])
@@ -42,3 +50,19 @@ def write(directory, records):
     directory.mkdir(parents=True, exist_ok=True)
     (directory / "runs.jsonl").write_text("".join(json.dumps(entry) + "\n" for entry in records))
     return directory
+
+
+def small_sweep():
+    """Two planners, two instances, with and without topple, two buffer counts: all is solved but one setting."""
+    runs = []
+    for number in range(2):
+        for buffers in (0, 4):
+            for variant in ("topple", "no-topple"):
+                better, cost = number + buffers, 10 if variant == "topple" else 15
+                setting = {"variant": variant, "buffers": buffers, "instance_document": DOCUMENT}
+                setting |= {"instance_hash": f"h{number}-{buffers}", "load_average": [0.1, 0.1]}
+                solved = [(0.05, cost + better + 2), (0.5, cost + better)]
+                runs.append(record(number, solved, label="p & q", status="optimal", **setting))
+                lost = buffers == 0 and variant == "no-topple"
+                runs.append(record(number, [] if lost else [(0.5, cost + better + 1)], label="weak", **setting))
+    return runs

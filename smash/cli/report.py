@@ -1,0 +1,38 @@
+"""`smash report RESULTS`: records as one page that needs nothing else, and its parts as files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from smash.problem.errors import SmashError
+
+
+@click.command("report")
+@click.argument("results", type=click.Path(path_type=Path, file_okay=False))
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), metavar="DIR", help="Default: RESULTS/report.")
+def command(results: Path, out: Path | None) -> None:
+    """Make DIR/index.html from the records in RESULTS, and its parts (PNG, PDF, Markdown, LaTeX, CSV) in DIR/parts.
+
+    RESULTS is what a sweep, its episodes or a topple map wrote, or a directory that holds several such: each becomes
+    a section. The page is one file and needs no network; every cell of a heatmap lists the runs behind it.
+
+    \b
+    Examples:
+      smash report runs/ablation
+      smash report results --out report
+    """
+    try:
+        import jinja2  # noqa: F401
+        import matplotlib  # noqa: F401
+
+        from analysis.records import NoRecords
+        from analysis.report import page
+    except ImportError as error:
+        raise SmashError(f"analysis is not installed ({error}): pip install 'smash-testbed[analysis]'") from None
+    try:
+        made = page.make(results, out or results / "report", lambda line: click.echo(line, err=True))
+    except NoRecords as error:
+        raise SmashError(str(error)) from None
+    click.echo(f"{made} ({made.stat().st_size / 1e6:.1f} MB), parts in {made.parent / 'parts'}")
