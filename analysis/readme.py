@@ -21,7 +21,7 @@ from analysis.cells import matched_cells, variant_cells
 from analysis.heatmaps import planner_figure
 from analysis.readings import readings
 from analysis.records import NoRecords, read_records
-from analysis.scaling import scaling_figure
+from analysis.scaling import scaling_chart
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -50,7 +50,7 @@ def scaling(results: Path) -> Drawing:
     if not file.is_file():
         raise NoRecords(f"{file} is not there")
     cells = pd.read_csv(file, dtype={"room": str})
-    return data_hash(cells), lambda: scaling_figure(cells, "proof_seconds")
+    return data_hash(cells), scaling_chart(cells, "proof_seconds").figure
 
 
 DRAWN = {"docs/figures/ablation-layered-cold.png": ablation, "docs/figures/scaling-proofs.png": scaling}
