@@ -10,7 +10,7 @@ from typing import Any
 
 import pandas as pd
 
-from analysis.records import RUN_FORMAT, NoRecords, encodable, read_lines
+from analysis.records import RUN_FORMAT, NoRecords, read_lines
 
 EPISODE_FORMAT = "smash-episode-run/1"
 TRIAL_FORMAT = "smash-topple-trial/1"
@@ -88,12 +88,12 @@ def _directories(results: Path, out: Path) -> list[Path]:
 
 def _read(directory: Path, results: Path) -> Source:
     name = results.resolve().name if directory == results else directory.relative_to(results).as_posix()
-    source = Source(encodable(name), directory)
+    source = Source(name.encode(errors="backslashreplace").decode(), directory)
     for file, wanted in FORMATS.items():
         if not (directory / file).is_file():
             continue
         try:
-            records = [encodable(record) for record in read_lines(directory / file, wanted)]
+            records = read_lines(directory / file, wanted)
         except NoRecords as error:
             source.problems.append(str(error))
             continue
