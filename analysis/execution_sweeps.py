@@ -16,9 +16,9 @@ import pandas as pd
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from analysis.cells import wilson
 from analysis.execution_tables import WITHOUT, paired_table, read_episodes
 from analysis.records import NoRecords, read_lines
+from analysis.statistics import wilson
 from analysis.tables import markdown
 
 TRIAL_FORMAT = "smash-topple-trial/1"
