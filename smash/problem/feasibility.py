@@ -4,6 +4,7 @@ With topple everything can be brought to the table region and built up from ther
 unless an `on` goal wants more bottoms than there are locations. Without topple three locations reach every
 arrangement; two locations are one line of blocks with a movable gap (first location upward, then the second
 downward), whose order never changes, and one location is a pile on which blocks of the table region can only be put.
+Blocks on a carrier that must not be carried are as loose as those of the table region.
 """
 
 from __future__ import annotations
@@ -53,14 +54,14 @@ def _goal_piles(instance: Instance, goal: StacksGoal | PositionsGoal) -> list[Pi
 
 def _piles_fit(instance: Instance, wanted: list[Pile]) -> bool:
     """Whether one or two locations can hold the listed blocks at their heights, the rest anywhere."""
-    on_table = frozenset(instance.table)
+    loose = frozenset(instance.table).union(*(carrier.holds for carrier in instance.carriers))
     starts = [instance.start[location] for location in instance.locations]
     if len(starts) == 1:
         common = min(len(starts[0]), len(wanted[0]))
         return starts[0][:common] == wanted[0][:common]
     line = starts[0] + starts[1][::-1]
-    left = tuple(block for block in wanted[0] if block not in on_table)
-    right = tuple(block for block in reversed(wanted[1]) if block not in on_table)
+    left = tuple(block for block in wanted[0] if block not in loose)
+    right = tuple(block for block in reversed(wanted[1]) if block not in loose)
     return line[: len(left)] == left and line[len(line) - len(right) :] == right
 
 

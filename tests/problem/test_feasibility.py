@@ -9,6 +9,8 @@ from hypothesis import given, settings
 from smash.problem import OnGoal, PlanOptions, PositionsGoal, StacksGoal, make_instance
 from smash.problem.feasibility import why_infeasible
 from tests.oracle import optimal_cost
+from tests.cheapest import cheapest_plan
+from tests.family_strategies import family_instances
 from tests.strategies import instances, plan_options
 
 NO_TOPPLE = PlanOptions(topple=False)
@@ -51,6 +53,13 @@ def random_relations(seed):
 def test_relations_with_any_number_of_bottoms_agree_with_exhaustive_search(topple):
     for seed in range(400):
         agree(random_relations(seed), PlanOptions(topple=topple, max_topple=1 if topple else None))
+
+
+@settings(max_examples=150, deadline=None)
+@given(family_instances(max_blocks=3, max_stacks=2, max_buffers=0))
+def test_blocks_on_a_carrier_that_stays_where_it_is_can_be_put_anywhere(instance):
+    options = PlanOptions(topple=False, without=("carry", "lift"))
+    assert (why_infeasible(instance, options) is None) == (cheapest_plan(instance, options) is not None)
 
 
 def test_two_locations_without_topple_keep_their_line():
