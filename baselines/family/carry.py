@@ -33,7 +33,7 @@ class CarryPart(Part):
         for carrier in instance.carriers:
             short = layout.carriers[carrier.name]
             yield ("parked", short, layout.stations[carrier.at])
-            yield ("room", short, self._room(telling, State.start_of(instance), carrier.name))
+            yield ("room", short, room(telling, carrier.name, len(carrier.holds)))
             yield from (("on-carrier", telling.block(block), short) for block in carrier.holds)
             if carries:
                 yield ("loads", short)
@@ -61,13 +61,14 @@ class CarryPart(Part):
         layout = telling.layout
         match action:
             case Pick(block, carrier):
-                room, more = self._room(telling, state, carrier), self._room(telling, state, carrier, 1)
-                yield ("pick-from-carrier", telling.block(block), *self._stand(telling, state, carrier), room, more)
+                held, stand = len(state.carried[carrier]), self._stand(telling, state, carrier)
+                counts = room(telling, carrier, held), room(telling, carrier, held - 1)
+                yield ("pick-from-carrier", telling.block(block), *stand, *counts)
             case Place(block, carrier):
-                room, left = self._room(telling, state, carrier), self._room(telling, state, carrier, -1)
                 short, station, spot = self._stand(telling, state, carrier)
-                origin = layout.spot(state.origin or TABLE)
-                yield ("place-on-carrier", telling.block(block), short, station, origin, spot, room, left)
+                held, origin = len(state.carried[carrier]), layout.spot(state.origin or TABLE)
+                counts = room(telling, carrier, held), room(telling, carrier, held + 1)
+                yield ("place-on-carrier", telling.block(block), short, station, origin, spot, *counts)
             case Carry(carrier, target):
                 short, station, spot = self._stand(telling, state, carrier)
                 yield ("carry", short, station, layout.stations[target], spot, layout.spot(target))
@@ -90,7 +91,8 @@ class CarryPart(Part):
         layout, station = telling.layout, state.stations[carrier]
         return layout.carriers[carrier], layout.stations[station], layout.spot(station)
 
-    def _room(self, telling: Telling, state: State, carrier: str, more: int = 0) -> str:
-        capacity = next(known.capacity for known in telling.instance.carriers if known.name == carrier)
-        capacity = min(capacity, len(telling.instance.blocks))
-        return telling.layout.count(capacity - len(state.carried[carrier]) + more)
+
+def room(telling: Telling, carrier: str, held: int) -> str:
+    """Return the count of the blocks that fit on a carrier beside those that it holds."""
+    capacity = next(known.capacity for known in telling.instance.carriers if known.name == carrier)
+    return telling.layout.count(min(capacity, len(telling.instance.blocks)) - held)

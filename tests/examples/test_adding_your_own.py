@@ -128,7 +128,9 @@ def test_the_package_installs(tmp_path):
     assert json.loads(plan("best-first", environment, tmp_path).stdout)["cost"] == 3
 
 
-def test_the_aggregating_action_is_planned_with_where_it_pays(installed, tmp_path):
+@pytest.fixture
+def far(tmp_path):
+    """A file of an instance where pouring out a tray pays."""
     places = {"s1": [0, 0], "s2": [0, 0], "g1": [9, 0], "g2": [9, 0], "table": [0, 2], "left": [0, 1], "right": [9, 1]}
     instance = {
         "format": "smash-instance/2",
@@ -141,6 +143,10 @@ def test_the_aggregating_action_is_planned_with_where_it_pays(installed, tmp_pat
         "costs": {"actions": {"pour": 2, "carry": 5, "pick": 20, "place": 20}, "travel": 100, "positions": places},
     }
     (tmp_path / "far.json").write_text(json.dumps(instance))
+    return tmp_path / "far.json"
+
+
+def test_the_aggregating_action_is_planned_with_where_it_pays(installed, far, tmp_path):
     planned = run(["-m", "smash", "plan", "far.json", "--out", "plan.json"], installed, tmp_path)
     assert planned.returncode == 0, planned.stderr
     document = json.loads((tmp_path / "plan.json").read_text())
@@ -153,3 +159,13 @@ def test_the_aggregating_action_is_planned_with_where_it_pays(installed, tmp_pat
         ["-m", "smash", "validate", "far.json", "plan.json"], {**installed, "PYTHONPATH": str(ROOT)}, tmp_path
     )
     assert (unknown.returncode, unknown.stderr.count("\n")) == (2, 1)
+
+
+@pytest.mark.skipif(FAST_DOWNWARD.root is None, reason="Fast Downward is not installed")
+def test_the_aggregating_actions_part_of_pddl_is_planned_with_at_the_same_cost(installed, far, tmp_path):
+    costs = []
+    for planner in ("astar", "fd-opt"):
+        answer = json.loads(run(["-m", "smash", "plan", far, "--planner", planner], installed, tmp_path).stdout)
+        assert (answer["status"], answer["actions"][0]) == ("optimal", ["pour", "tray"])
+        costs.append(answer["cost"])
+    assert costs[0] == costs[1]

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 
 from smash.problem import OnGoal, PlanOptions, PositionsGoal, StacksGoal, make_instance
 from smash.problem.feasibility import why_infeasible
-from tests.oracle import optimal_cost
 from tests.cheapest import cheapest_plan
 from tests.family_strategies import family_instances
+from tests.oracle import optimal_cost
 from tests.strategies import instances, plan_options
 
 NO_TOPPLE = PlanOptions(topple=False)
