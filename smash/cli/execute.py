@@ -75,7 +75,7 @@ def command(
         tabletop,
         seed=seed,
         policy=OPEN if no_replan else None,
-        replanner=None if no_replan else make_replanner(replanner or filed.planner, filed.options, budget, seed),
+        replanner=None if no_replan else make_replanner(replanner or filed.planner, budget, seed),
         gui=gui,
         on_frame=capture.frame,
     )

@@ -28,12 +28,15 @@ from smash.execution.tabletop import Tabletop
 from smash.execution.world import Frame, World
 from smash.problem.errors import IllegalAction
 from smash.problem.files import action_from_list, action_list
-from smash.problem.model import Action, Instance, State
+from smash.problem.model import Action, Instance, PlanOptions, State
 from smash.problem.plan import Plan
 from smash.problem.rules import Law
 
-Replanner = Callable[[Instance], Sequence[Action] | None]
-"""From an observed instance to a plan for it, or None where the planner found none."""
+Replanner = Callable[[Instance, PlanOptions], Sequence[Action] | None]
+"""From an observed instance and what plans may use to a plan for it, or None where the planner found none."""
+
+TOPPLES_FAILED = 2
+"""After so many failed topples in an episode, plans anew do without."""
 
 JUDGE_WAIT = 2.0
 """Success is judged on settled blocks, and again after this long [s]."""
@@ -48,7 +51,7 @@ class Executor:
         tabletop: The scene.
         seed: Of the blocks' start and of the motion planner.
         policy: What to do about failures.
-        replanner: Plans the task anew from an observed instance.
+        replanner: Plans the task anew from what is observed.
         gui: Open PyBullet's window.
         on_frame: Called with the world 25 times a simulated second.
     """
@@ -194,9 +197,19 @@ class Executor:
         if NOWHERE in state.stations.values():
             return None
         begun = perf_counter()
-        actions = None if self.replanner is None else self.replanner(observed_instance(self.instance, state))
+        actions = self._ask(observed_instance(self.instance, state))
         self.task_seconds += perf_counter() - begun
         return None if actions is None else self._ground(actions)
+
+    def _ask(self, instance: Instance) -> Sequence[Action] | None:
+        """A plan for what is observed, without topples where they keep failing."""
+        if self.replanner is None:
+            return None
+        options = self.plan.options
+        failed = sum(row.action[0] == "topple" and row.outcome != "done" for row in self.performed)
+        if failed < TOPPLES_FAILED:
+            return self.replanner(instance, options)
+        return self.replanner(instance, replace(options, topple=False)) or self.replanner(instance, options)
 
     def _episode(self, failure: ExecutionFailure | None, final: State) -> Episode:
         rows = self.performed

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import product
 from math import ceil, cos, sin
 
 import numpy as np
@@ -125,6 +126,7 @@ def topple(
     height: int,
     poses: Mapping[str, BlockPose],
     carriers: Mapping[str, BlockPose] | None = None,
+    loose: frozenset[str] = frozenset(),
 ) -> list[Segment]:
     """From `start` [rad] to before the pile, through its upper part, and back.
 
@@ -138,6 +140,7 @@ def topple(
         height: The lowest level that shall fall, 1 is the bottom.
         poses: All blocks whose poses are known.
         carriers: All carriers.
+        loose: Blocks that lie on the table: where there is no other way, the push shoves them along.
 
     Raises:
         NoIk, NoMotion: where no direction allows it; the message is about the preferred one.
@@ -146,10 +149,11 @@ def topple(
     falling = pile[cut - 1 :]
     others = [pose for name, pose in poses.items() if name not in pile] + list((carriers or {}).values())
     scene = steps.scene(poses, carriers)
+    preferred = directions(slot, len(falling), others, steps.side)
     problem: ExecutionFailure | None = None
-    for direction in directions(slot, len(falling), others, steps.side):
+    for shoved, direction in product(dict.fromkeys((frozenset[str](), loose)), preferred):
         try:
-            return _push(steps, start, slot, direction, falling, cut, scene)
+            return _push(steps, start, slot, direction, falling, cut, scene, shoved)
         except ExecutionFailure as failure:
             problem = problem or failure
     raise problem or NoIk("the stack has no topple direction")
@@ -167,7 +171,8 @@ class ToppleMotion(AggregateMotion[Topple]):
             NoIk, NoMotion: where no direction allows it.
         """
         pile, slot = tuple(state.piles[action.location]), where.slots[action.location]
-        return topple(steps, start, slot, pile, action.height, where.blocks, where.carriers)
+        loose = frozenset(state.table).intersection(where.blocks)
+        return topple(steps, start, slot, pile, action.height, where.blocks, where.carriers, loose)
 
     def foresee(self, steps: Steps, action: Topple, state: State, where: Geometry) -> None:
         """Forget the poses of what falls."""
@@ -184,7 +189,14 @@ class ToppleMotion(AggregateMotion[Topple]):
 
 
 def _push(
-    steps: Steps, start: Vector, slot: Slot, direction: str, falling: tuple[str, ...], height: int, scene: Scene
+    steps: Steps,
+    start: Vector,
+    slot: Slot,
+    direction: str,
+    falling: tuple[str, ...],
+    height: int,
+    scene: Scene,
+    shoved: frozenset[str],
 ) -> list[Segment]:
     heading = slot.heading(direction)
     along = np.array([cos(heading), sin(heading), 0.0])
@@ -192,8 +204,8 @@ def _push(
     base = np.array([slot.x, slot.y, (height - 1 + ABOVE_CUT) * steps.side + FINGERTIP_BEYOND_TOOL])
     how = manner(height, len(falling))
     length = RUN_UP + how.follow_through * steps.side
-    closed, fallen = HandState(0.0), frozenset(falling)
-    pushed = scene.without(falling)
+    closed, fallen = HandState(0.0), shoved.union(falling)
+    pushed = scene.without(fallen)
     problem: ExecutionFailure | None = None
     for yaw in (heading, heading + np.pi):
         pose = top_down(base - (reach + RUN_UP) * along, yaw)

@@ -43,7 +43,7 @@ def run_question(question: dict[str, Any]) -> Episode:
         scene,
         seed=seed,
         policy=OPEN if is_open else None,
-        replanner=None if is_open else replanner(plan.planner, plan.options, REPLAN_BUDGET, seed),
+        replanner=None if is_open else replanner(plan.planner, REPLAN_BUDGET, seed),
     )
     return executor.run()
 

@@ -14,21 +14,18 @@ FALLBACK = "greedy"
 """Plans at once, any start and goal: asked where the chosen planner has no answer."""
 
 
-def replanner(
-    planner: str, options: PlanOptions, budget: float, seed: int = 0
-) -> Callable[[Instance], Sequence[Action] | None]:
+def replanner(planner: str, budget: float, seed: int = 0) -> Callable[[Instance, PlanOptions], Sequence[Action] | None]:
     """Return a function that plans by `planner`, in processes of its own, and by `FALLBACK` where that fails.
 
     Args:
         planner: A registered name; `FALLBACK` alone is used where nobody is called so.
-        options: What plans may use.
         budget: Seconds of wall time for each plan.
         seed: For planners that draw.
     """
-    settings = SolveOptions(options.topple, options.max_topple, seed=seed, without=options.without)
     names = [name for name in dict.fromkeys((planner, FALLBACK)) if why_unknown(name) is None]
 
-    def plan(instance: Instance) -> Sequence[Action] | None:
+    def plan(instance: Instance, options: PlanOptions) -> Sequence[Action] | None:
+        settings = SolveOptions(options.topple, options.max_topple, seed=seed, without=options.without)
         for name in names:
             report = run_isolated(Job(name, instance, settings, budget))
             if report.actions is not None:

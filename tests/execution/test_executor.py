@@ -80,7 +80,7 @@ def test_blocks_that_start_in_the_table_region_are_picked_from_there():
 def test_a_failed_episode_is_planned_anew_from_what_is_observed():
     asked = []
 
-    def replan(instance):
+    def replan(instance, options):
         asked.append(instance)
         return swapped_plan().actions[1:]
 
@@ -120,5 +120,26 @@ def test_committed_instances_succeed(suite):
     options = SolveOptions()
     for instance in read_suite(suite)[:4]:
         plan = GreedyPlanner().solve(instance, options, 5.0).as_plan(instance, "greedy", options)
-        episode = run(instance, plan, replanner=replanner("greedy", options, 5.0))
+        episode = run(instance, plan, replanner=replanner("greedy", 5.0))
         assert episode.success, (instance.name, episode.failure)
+
+
+def test_where_topples_keep_failing_plans_anew_do_without():
+    asked = []
+
+    def replan(instance, options):
+        asked.append(options.topple)
+        return swapped_plan().actions if options.topple else SWAPPED_BY_PICKS
+
+    walled_in = tuple(dataclasses.replace(slot, directions=()) for slot in default_scene().stacks)
+    scene = dataclasses.replace(default_scene(), stacks=walled_in)
+    episode = run(swapped_pair(), swapped_plan(), scene=scene, replanner=replan)
+    assert episode.success, episode.failure
+    assert asked == [True, False]
+
+
+SWAPPED_BY_PICKS = [
+    action
+    for block, source, target in (("b", "s2", "s1"), ("a", "s2", "s3"), ("b", "s1", "s2"), ("a", "s3", "s2"))
+    for action in (Pick(block, source), Place(block, target))
+]
