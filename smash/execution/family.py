@@ -12,6 +12,7 @@ from typing import Any
 
 from smash.execution.aggregate_motion import AggregateMotion
 from smash.execution.carrying import CarryMotion
+from smash.execution.lifting import LiftMotion
 from smash.execution.pushes import ToppleMotion
 from smash.problem.model import Aggregating
 
@@ -28,6 +29,6 @@ def _from_outside() -> Iterator[AggregateMotion[Any]]:
 
 
 MOTIONS: dict[type[Aggregating], AggregateMotion[Any]] = {
-    motion.action: motion for motion in (*_from_outside(), ToppleMotion(), CarryMotion())
+    motion.action: motion for motion in (*_from_outside(), ToppleMotion(), CarryMotion(), LiftMotion())
 }
 """Motions by the class of the action; the built-in ones cannot be replaced."""

@@ -7,23 +7,30 @@ the way is level throughout, by construction. Each piece begins and ends at rest
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import product
 from math import atan2, cos, hypot, pi, sin, sqrt
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from smash.execution.collision import CONTACT_MARGIN, DEFAULT_MARGIN
+from smash.execution.collision import CONTACT_MARGIN, DEFAULT_MARGIN, CollisionChecker
 from smash.execution.errors import ExecutionFailure, NoMotion
+from smash.execution.kinematics import descend
 from smash.execution.paths import Path
 from smash.execution.poses import ToolPose, Vector
-from smash.execution.robot import LOWER, UPPER, panda
+from smash.execution.robot import panda
 from smash.execution.scene import BodyName, HandState, Scene
 from smash.execution.steps import Move, Steps
 from smash.execution.timing import time_gently
 
+Piece = tuple[Path, float]
+"""A path and the distance from other things that it keeps [m]."""
+
 GRAVITY = 9.81
+FIRST_JOINT = np.eye(7)[0]
+SHORTEST = 0.0005
+"""Lines shorter than this are left out [m]."""
 FRICTION_SHARE = 0.4
 """What is carried is accelerated by this share of what friction would bear."""
 SPEED = 0.5
@@ -73,72 +80,98 @@ def level_way(
         manner: How fast.
 
     Raises:
-        NoMotion: where no such way is free; the message is about the lowest.
+        NoIk, NoMotion: where no such way is free; the message is about the lowest.
     """
-    tool = panda().forward(start)
-    problem: ExecutionFailure | None = None
-    ends = hypot(*tool.position[:2]), hypot(*target.position[:2])
-    for rise, radius, turn in product(RISES, dict.fromkeys((*ends, *RADII)), _turns(start, tool, target)):
-        height = max(tool.position[2], target.position[2]) + rise
-        try:
-            pieces = list(_pieces(steps, start, target, height, radius, turn, scene, hand))
-        except ExecutionFailure as failure:
-            problem = problem or failure
-            continue
-        return [_gentle(path, hand, ignored, margin, manner) for path, margin in pieces]
-    raise problem or NoMotion("the first joint's limits leave no level way there")
+    search = _Search(steps, target, scene, hand)
+    pieces = search.way(start)
+    return [_gentle(path, hand, ignored, margin, manner) for path, margin in pieces]
 
 
-def _turns(start: Vector, tool: ToolPose, target: ToolPose) -> list[float]:
-    """Turns of the first joint that give the tool the target's yaw within the joint's limits [rad], shortest first."""
-    relative = target.rotation @ tool.rotation.T
-    turn = atan2(float(relative[1, 0]), float(relative[0, 0]))
-    both = sorted((turn - 2 * pi, turn, turn + 2 * pi), key=abs)
-    return [angle for angle in both if LOWER[0] <= start[0] + angle <= UPPER[0]]
+class _Search:
+    """Level ways to one target, low ones first; a piece that is blocked rules out all ways that begin with it."""
+
+    def __init__(self, steps: Steps, target: ToolPose, scene: Scene, hand: HandState) -> None:
+        self._motion = steps.motion
+        self._target = target
+        self._scene = scene
+        self._hand = hand
+
+    def way(self, start: Vector) -> list[Piece]:
+        """The first way that is free.
+
+        Raises:
+            NoIk, NoMotion: where none is.
+        """
+        tool, target = panda().forward(start), self._target
+        turns = self._turns(start, tool)
+        x, y, z = (float(value) for value in tool.position)
+        bearing = atan2(y, x)
+        radii = dict.fromkeys((hypot(x, y), hypot(*target.position[:2]), *RADII))
+        problem: ExecutionFailure | None = None
+        for rise in RISES:
+            height = max(z, float(target.position[2])) + rise
+            try:
+                up = self._line(start, (x, y, height), CONTACT_MARGIN)
+            except ExecutionFailure as failure:
+                raise problem or failure from None
+            for radius in radii:
+                try:
+                    out = self._line(_end(up, start), (radius * cos(bearing), radius * sin(bearing), height))
+                except ExecutionFailure as failure:
+                    problem = problem or failure
+                    continue
+                for turn in turns:
+                    try:
+                        return [*up, *out, *self._turned(_end([*up, *out], start), turn, height)]
+                    except ExecutionFailure as failure:
+                        problem = problem or failure
+        assert problem is not None
+        raise problem
+
+    def _turns(self, start: Vector, tool: ToolPose) -> list[float]:
+        """Turns of the first joint that give the tool the target's yaw and leave the target in reach [rad].
+
+        Raises:
+            NoMotion: where there is none.
+        """
+        relative = self._target.rotation @ tool.rotation.T
+        turn = atan2(float(relative[1, 0]), float(relative[0, 0]))
+        both = sorted((turn - 2 * pi, turn, turn + 2 * pi), key=abs)
+        checker = CollisionChecker(self._scene, self._hand, CONTACT_MARGIN)
+        for angle in list(both):
+            there = descend(self._target, start + angle * FIRST_JOINT, panda())
+            if there is None or not checker.free(there):
+                both.remove(angle)
+        if not both:
+            raise NoMotion("no turn of the first joint brings what is carried to its place")
+        return both
+
+    def _turned(self, now: Vector, turn: float, height: float) -> list[Piece]:
+        """The turn, the line to above the target, and the line down.
+
+        Raises:
+            NoIk, NoMotion: at the first that is not possible.
+        """
+        x, y, z = (float(value) for value in self._target.position)
+        around = self._motion.straight(now, now + turn * FIRST_JOINT, self._scene, hand=self._hand)
+        across = self._line(around.end, (x, y, height))
+        down = self._line(_end(across, around.end), (x, y, z), CONTACT_MARGIN)
+        return [(around, DEFAULT_MARGIN), *across, *down]
+
+    def _line(self, now: Vector, point: ArrayLike, margin: float = DEFAULT_MARGIN) -> list[Piece]:
+        """A straight line to a point, or nothing where the tool is there.
+
+        Raises:
+            NoIk, NoMotion: where it is not possible.
+        """
+        offset = np.asarray(point) - panda().forward(now).position
+        if np.linalg.norm(offset) < SHORTEST:
+            return []
+        return [(self._motion.line(now, offset, self._scene, hand=self._hand, margin=margin), margin)]
 
 
-def _pieces(
-    steps: Steps,
-    start: Vector,
-    target: ToolPose,
-    height: float,
-    radius: float,
-    turn: float,
-    scene: Scene,
-    hand: HandState,
-) -> Iterator[tuple[Path, float]]:
-    """The way's paths with the margins that they keep.
-
-    Raises:
-        NoIk, NoMotion: at the first that is not possible.
-    """
-    at = panda().forward(start).position
-    bearing = atan2(at[1], at[0])
-    turned = np.array([radius * cos(bearing + turn), radius * sin(bearing + turn), height])
-    x, y, z = target.position
-    now = start
-    lines: Iterable[tuple[Vector, float]] = (
-        (np.array([at[0], at[1], height]), CONTACT_MARGIN),
-        (np.array([radius * cos(bearing), radius * sin(bearing), height]), DEFAULT_MARGIN),
-        (turned, DEFAULT_MARGIN),
-        (np.array([x, y, height]), DEFAULT_MARGIN),
-        (np.array([x, y, z]), CONTACT_MARGIN),
-    )
-    for point, margin in lines:
-        if point is turned:
-            end = now + np.array([turn, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
-            path = steps.motion.straight(now, end, scene, hand=hand, margin=margin)
-        else:
-            offset = point - panda().forward(now).position
-            if np.linalg.norm(offset) < SHORTEST:
-                continue
-            path = steps.motion.line(now, offset, scene, hand=hand, margin=margin)
-        now = path.end
-        yield path, margin
-
-
-SHORTEST = 0.0005
-"""Lines shorter than this are left out [m]."""
+def _end(pieces: Sequence[Piece], start: Vector) -> Vector:
+    return pieces[-1][0].end if pieces else start
 
 
 def _gentle(path: Path, hand: HandState, ignored: frozenset[BodyName], margin: float, manner: Gentleness) -> Move:

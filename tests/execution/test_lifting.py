@@ -1,0 +1,97 @@
+"""Lifting the upper part of a pile whole: grasps, refusals, and a lift in physics."""
+
+import dataclasses
+from math import acos
+
+import numpy as np
+import pytest
+
+from smash.execution.aggregate_motion import Geometry
+from smash.execution.errors import ExecutionFailure, NoIk
+from smash.execution.executor import Executor
+from smash.execution.family import MOTIONS
+from smash.execution.policy import OPEN
+from smash.execution.readback import read_state
+from smash.execution.robot import READY, panda
+from smash.execution.scene_file import default_scene
+from smash.execution.start import starting_poses
+from smash.execution.steps import Move, Steps
+from smash.execution.tabletop import Slot
+from smash.problem import Lift, Pick, Place, PositionsGoal, State, make_instance
+from tests.execution.episodes import plan_of
+
+
+def two_piles(**start):
+    blocks = [block for pile in start.values() for block in pile]
+    return make_instance(
+        name="piles",
+        blocks=blocks,
+        stacks=["s1", "s2", "s3"],
+        buffers=["u1"],
+        start=start,
+        goal=PositionsGoal({}),
+        capacities={"lift": 4},
+    )
+
+
+def lifted(instance, action, scene=None):
+    scene = scene or default_scene()
+    slots = scene.bind(instance)
+    where = Geometry(slots, blocks=starting_poses(instance, slots, scene, np.random.default_rng(0)))
+    steps, state = Steps(scene), State.start_of(instance)
+    segments = MOTIONS[Lift].plan(steps, READY, action, state, where)
+    MOTIONS[Lift].foresee(steps, action, state, where)
+    return segments, read_state(where, scene)
+
+
+@pytest.mark.parametrize("height", [1, 2, 3])
+def test_a_pile_is_held_at_one_tilt_all_the_way(height):
+    segments, after = lifted(two_piles(s1="abcd", s2="e"), Lift("s1", height, "s2"))
+    assert after.piles["s2"] == [*"e", *"abcd"[height - 1 :]]
+    tilts = [
+        acos(-panda().forward(joints).rotation[2, 2])
+        for segment in segments
+        if isinstance(segment, Move) and segment.hand.attached is not None
+        for joints in segment.trajectory.sample(0.02)
+    ]
+    assert max(tilts) - min(tilts) < 0.01
+
+
+def test_a_pile_out_of_reach_is_a_named_failure():
+    scene = dataclasses.replace(default_scene(), stacks=(Slot(0.95, 0.5), *default_scene().stacks[1:]))
+    with pytest.raises(NoIk, match="block 'a' from the side"):
+        lifted(two_piles(s1="ab"), Lift("s1", 1, "s2"), scene)
+
+
+def test_a_pile_that_is_walled_in_is_a_named_failure():
+    """Blocks twice as high as the fingers are long leave the palm no room, and neighbours leave the hand none."""
+    around = tuple(Slot(0.45 + dr, 0.5 + da) for dr, da in ((0.0, 0.2), (0.0, -0.2), (0.09, 0.0), (-0.09, 0.0)))
+    scene = default_scene()
+    walled = dataclasses.replace(scene, stacks=(Slot(0.45, 0.5), scene.stacks[1], *around))
+    instance = make_instance(
+        name="walled",
+        blocks=[f"{place}{level}" for place in "amwxyz" for level in range(2)],
+        stacks=["s", "g", "w", "x", "y", "z"],
+        start={
+            "s": ["a0", "a1"],
+            "g": ["m0", "m1"],
+            "w": ["w0", "w1"],
+            "x": ["x0", "x1"],
+            "y": ["y0", "y1"],
+            "z": ["z0", "z1"],
+        },
+        goal=PositionsGoal({}),
+        capacities={"lift": 2},
+    )
+    with pytest.raises(ExecutionFailure, match="block 'a0'"):
+        lifted(instance, Lift("s", 1, "g"), walled)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("height", "seed"), [(1, 0), (2, 1), (3, 2)])
+def test_a_lifted_pile_arrives_in_its_order(height, seed):
+    instance = two_piles(s1="abcd", s2="e")
+    actions = [Lift("s1", height, "s2"), Pick("d", "s2"), Place("d", "s3")]
+    episode = Executor(instance, plan_of("piles", *actions), default_scene(), seed=seed, policy=OPEN).run()
+    assert episode.success, episode.failure
+    assert episode.final.piles["s2"] == [*"e", *"abc"[height - 1 :]]
