@@ -4,7 +4,17 @@ import itertools
 
 from hypothesis import strategies as st
 
-from smash.problem import TABLE, Carrier, Costs, Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal, make_instance
+from smash.problem import (
+    TABLE,
+    Carrier,
+    Costs,
+    Instance,
+    OnGoal,
+    PlanOptions,
+    PositionsGoal,
+    StacksGoal,
+    make_instance,
+)
 
 ODD_NAMES = ["b 1", "", "größe", "quote'\"", "s1", "-", "(x)", "42", "B1", "b1"]
 
@@ -68,48 +78,53 @@ def instances(
     )
 
 
-@st.composite
-def family_instances(draw, max_blocks=3, max_stacks=3, max_buffers=1, kinds=("stacks", "positions", "on")) -> Instance:
-    """Draw a small instance with, perhaps, a carrier, lifts and costs."""
-    plain = draw(instances(max_blocks=max_blocks, max_stacks=max_stacks, max_buffers=max_buffers, kinds=kinds))
-    carriers, held = [], ()
-    if draw(st.booleans()):
-        held = plain.table[: draw(st.integers(0, 1))]
-        stations = ("left", "right", "far")[: draw(st.integers(1, 3))]
-        carriers = [Carrier("tray", stations, draw(st.sampled_from(stations)), draw(st.integers(1, 2)), held)]
-    places = [*plain.locations, TABLE, *(station for carrier in carriers for station in carrier.stations)]
-    positions = {place: (draw(st.integers(0, 9)) / 10, draw(st.integers(0, 9)) / 10) for place in places}
-    prices = {name: draw(st.integers(1, 6)) for name in ("pick", "place", "topple", "carry", "lift")}
-    costs = draw(
-        st.sampled_from([Costs(), Costs(prices), Costs(prices, draw(st.sampled_from([5.0, 20.0])), positions)])
-    )
-    return make_instance(
-        name="family",
-        blocks=plain.blocks,
-        stacks=plain.stacks,
-        buffers=plain.buffers,
-        start=plain.start,
-        table=[block for block in plain.table if block not in held],
-        goal=plain.goal,
-        carriers=carriers,
-        capacities={"lift": draw(st.integers(1, 3))} if draw(st.booleans()) else {},
-        costs=costs,
-    )
-
-
-def family_options() -> st.SearchStrategy[PlanOptions]:
-    """Draw plan options that leave out some of the family."""
-    return st.sampled_from(
-        [
-            PlanOptions(),
-            PlanOptions(topple=False),
-            PlanOptions(True, 1),
-            PlanOptions(without=("carry",)),
-            PlanOptions(topple=False, without=("lift",)),
-        ]
-    )
-
-
 def plan_options() -> st.SearchStrategy[PlanOptions]:
     """Draw plan options: topple or not, capped or not."""
     return st.sampled_from([PlanOptions(), PlanOptions(topple=False), PlanOptions(True, 1), PlanOptions(True, 2)])
+
+
+@st.composite
+def family_instances(draw, max_capacity=3, max_carriers=2, max_blocks=3, max_buffers=1, **shape) -> Instance:
+    """Draw a small instance with carriers (some loaded), lifts and costs, any of them left out at times."""
+    plain = draw(instances(max_blocks=max_blocks, max_buffers=max_buffers, **shape))
+    start = {location: list(pile) for location, pile in plain.start.items()}
+    stations = [f"p{number}" for number in range(1, draw(st.integers(max_carriers, 3)) + 1)]
+    carriers = []
+    for number in range(draw(st.integers(0, max_carriers))):
+        capacity = draw(st.integers(1, 2))
+        full = [location for location, pile in start.items() if pile]
+        holds = [start[draw(st.sampled_from(full))].pop()] if full and draw(st.booleans()) else []
+        own = [stations[number], *(at for at in stations if at != stations[number] and draw(st.booleans()))]
+        carriers.append(Carrier(f"tray {number}", tuple(own), stations[number], capacity, tuple(holds)))
+    lift = draw(st.one_of(st.none(), st.integers(1, max_capacity)))
+    used = [station for carrier in carriers for station in carrier.stations]
+    return make_instance(
+        name="drawn",
+        blocks=plain.blocks,
+        stacks=plain.stacks,
+        buffers=plain.buffers,
+        start=start,
+        table=plain.table,
+        goal=plain.goal,
+        carriers=carriers,
+        capacities={} if lift is None else {"lift": lift},
+        costs=draw(costs([*plain.locations, *used])),
+    )
+
+
+@st.composite
+def costs(draw, places):
+    """Draw a cost model: counts, a cost per kind, distances, or both."""
+    kinds = ("pick", "place", "topple", "carry", "lift")
+    actions = {kind: draw(st.integers(1, 6)) for kind in kinds} if draw(st.booleans()) else {}
+    if draw(st.booleans()):
+        return Costs(actions)
+    point = st.tuples(*[st.integers(0, 4)] * 2)
+    positions = {place: draw(point) for place in [*places, TABLE]}
+    return Costs(actions, draw(st.sampled_from([1.0, 2.5])), positions)
+
+
+def family_options() -> st.SearchStrategy[PlanOptions]:
+    """Draw plan options that leave any of the aggregating actions out."""
+    without = st.sets(st.sampled_from(["carry", "lift"])).map(lambda names: tuple(sorted(names)))
+    return st.builds(PlanOptions, st.booleans(), st.sampled_from([None, None, 1, 2]), without=without)

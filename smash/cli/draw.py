@@ -8,8 +8,10 @@ from pathlib import Path
 
 import click
 
+from smash.cli.choices import without_option
 from smash.problem.files import read_instance, read_plan
-from smash.problem.model import Action, Instance, Place
+from smash.problem.model import Action, Instance, PlanOptions
+from smash.problem.rules import Law
 
 OUT = click.option(
     "--out",
@@ -38,6 +40,7 @@ def command() -> None:
 @click.option("--height", type=click.IntRange(min=1), default=4, show_default=True, metavar="L", help="Blocks.")
 @click.option("--max-topple", type=click.IntRange(min=1), metavar="M", help="At most M blocks in one topple.")
 @click.option("--no-topple", is_flag=True, help="The pick-and-place gadget.")
+@without_option
 @click.option("--literal", is_flag=True, help="The definitions as the paper prints them.")
 @OUT
 def draw_gadget_command(
@@ -47,23 +50,27 @@ def draw_gadget_command(
     height: int,
     max_topple: int | None,
     no_topple: bool,
+    without: tuple[str, ...],
     literal: bool,
     out: Path,
 ) -> None:
     """Draw the gadget of INSTANCE, or of the given size (.png, .pdf, .svg)."""
     from smash.gadget.drawing.figure import draw_gadget
-    from smash.gadget.library import pick_and_place_gadget, smash_gadget
+    from smash.gadget.library import gadget_of, pick_and_place_gadget, smash_gadget
 
-    if instance is None:
+    options = PlanOptions(not no_topple, max_topple, without=without)
+    problem = read_instance(instance) if instance is not None else None
+    if problem is not None and not literal:
+        gadget = gadget_of(problem, options)
+    else:
         stack_names = tuple(f"s{number}" for number in range(1, stacks + 1))
         locations = (*stack_names, *(f"u{number}" for number in range(1, buffers + 1)))
-    else:
-        problem = read_instance(instance)
-        stack_names, locations, height = problem.stacks, problem.locations, len(problem.blocks)
-    if no_topple:
-        gadget = pick_and_place_gadget(locations, height, literal=literal)
-    else:
-        gadget = smash_gadget(locations, height, stacks=stack_names, max_topple=max_topple, literal=literal)
+        if problem is not None:
+            stack_names, locations, height = problem.stacks, problem.locations, len(problem.blocks)
+        if no_topple:
+            gadget = pick_and_place_gadget(locations, height, literal=literal)
+        else:
+            gadget = smash_gadget(locations, height, stacks=stack_names, max_topple=max_topple, literal=literal)
     draw_gadget(gadget, out)
     click.echo(f"{out}: {len(gadget.nodes)} nodes, {len(gadget.edges)} edges")
 
@@ -100,7 +107,7 @@ def draw_plan_command(instance: Path, plan: Path, out: Path) -> None:
 
 def _without_idle_buffers(problem: Instance, actions: Sequence[Action]) -> Instance:
     """Return the problem without the buffers that hold nothing at any time, so that a picture shows what matters."""
-    used = {action.target for action in actions if isinstance(action, Place)}
-    kept = tuple(buffer for buffer in problem.buffers if buffer in used or problem.start[buffer])
+    used = {location for state in Law(problem).states(actions) for location, pile in state.piles.items() if pile}
+    kept = tuple(buffer for buffer in problem.buffers if buffer in used)
     start = {location: pile for location, pile in problem.start.items() if location in (*problem.stacks, *kept)}
     return replace(problem, buffers=kept, start=start)

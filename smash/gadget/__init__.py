@@ -1,6 +1,6 @@
 """The gadget: the typed graph on which objects move as pebbles (paper, section "Method")."""
 
-from smash.gadget.graph import Aggregate, Edge, EdgeKind, Gadget, GadgetBuilder, Node, NodeKey, NodeKind
+from smash.gadget.graph import Aggregate, Edge, EdgeKind, Gadget, GadgetBuilder, Node, NodeKey, NodeKind, Token
 from smash.gadget.library import gadget_of, pick_and_place_gadget, smash_gadget
 from smash.gadget.parts import AggregatingPart
 
@@ -14,6 +14,7 @@ __all__ = [
     "Node",
     "NodeKey",
     "NodeKind",
+    "Token",
     "gadget_of",
     "pick_and_place_gadget",
     "smash_gadget",

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-
-from smash.gadget.graph import Aggregate, EdgeKind
 from smash.gadget.motion import PebbleMotion
 from smash.problem.model import TABLE, Action, Instance, Pick, Place, PlanOptions, State
 from smash.problem.rules import Law
@@ -13,8 +10,8 @@ from smash.problem.rules import Law
 def decode(motion: PebbleMotion, instance: Instance, options: PlanOptions | None = None) -> tuple[Action, ...]:
     """Return the actions of a motion that starts in the start state of `instance`.
 
-    Moves of one step touch different locations (`motion_fault` says so), hence any order of them is legal; an
-    activation comes first, then transfers in the order of the pebbles.
+    Moves of one step touch different locations and carriers (`motion_fault` says so), hence any order of them is
+    legal; an activation comes first, then transfers in the order of the pebbles.
 
     Raises:
         IllegalAction: where the motion breaks the rules so that the law refuses an action.
@@ -31,20 +28,19 @@ def decode(motion: PebbleMotion, instance: Instance, options: PlanOptions | None
 
 def step_actions(motion: PebbleMotion, step: int, state: State) -> list[Action]:
     """Return the actions of one step, in the state before it."""
-    gadget = motion.gadget
-    gathered: dict[Aggregate, list[str]] = defaultdict(list)
+    gadget, active = motion.gadget, motion.active_in(step)
+    gathered: list[str] = []
     transfers: list[Action] = []
     for pebble, number in motion.moves(step):
-        edge, block = gadget.edges[number], motion.blocks[pebble]
+        edge = gadget.edges[number]
         if number in gadget.activations:
-            gathered[gadget.activations[number]].append(block)
-        elif edge.kind in (EdgeKind.TRANSFER, EdgeKind.RETURN):
-            source, target = gadget.nodes[edge.tail].location, gadget.nodes[edge.head].location
+            gathered += motion.blocks[pebble : pebble + 1]
+        elif edge.kind.picks:
+            block, source = motion.blocks[pebble], gadget.nodes[edge.tail].location
+            target = gadget.nodes[edge.head].location
             assert target is not None
             transfers += [Pick(block, TABLE if source is None else source), Place(block, target)]
-    activations: list[Action] = []
-    for aggregate, blocks in gathered.items():
-        location = gadget.nodes[aggregate.gather].location
-        assert location is not None
-        activations.append(gadget.parts[aggregate.part].action(location, blocks, state))
-    return activations + transfers
+    if active is None:
+        return transfers
+    aggregate = gadget.aggregates[active]
+    return [gadget.parts[aggregate.part].action(aggregate, gathered, state), *transfers]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from smash.gadget.graph import Gadget, NodeKind
+from smash.gadget.graph import Gadget
 from smash.gadget.library import gadget_of
 from smash.gadget.motion import PebbleMotion
-from smash.gadget.schedule import Event, Scheduler, TableVisit
+from smash.gadget.schedule import Event, Scheduler
 from smash.problem.model import Action, Instance
 
 
@@ -26,14 +26,13 @@ def encode(instance: Instance, actions: Sequence[Action], gadget: Gadget | None 
     """
     gadget = gadget or gadget_of(instance)
     schedule = Scheduler(gadget, instance).run(actions)
-    tracks: dict[str, list[tuple[int, int]]] = {block: [] for block in instance.blocks}
+    tracks = schedule.tracks
     for location, events in schedule.events.items():
         for layer, block, height in _chain(gadget.height, instance.start[location], events):
             tracks[block].append((layer, gadget.stack_node(location, height)))
-    for pebble, block in enumerate(instance.blocks, start=1):
-        for visit in schedule.visits.get(block, []):
-            tracks[block].extend(_table(gadget, pebble, visit))
-    return PebbleMotion(gadget, instance.blocks, _layers([sorted(tracks[block]) for block in instance.blocks]))
+    layers = _layers([*(sorted(set(tracks[block])) for block in instance.blocks), *schedule.tokens])
+    active = tuple(schedule.active.get(step) for step in range(len(layers) - 1))
+    return PebbleMotion(gadget, instance.blocks, layers, active)
 
 
 def _layers(tracks: list[list[tuple[int, int]]]) -> tuple[tuple[int, ...], ...]:
@@ -52,36 +51,31 @@ def _chain(top: int, start: Sequence[str], events: list[Event]) -> Iterator[tupl
     """Yield (layer, block, height) for the blocks of one location, while anything moves there.
 
     Blocks that never leave again head for their settled height, the others for their place in a pile that hangs
-    from the top node; every block moves by at most one height a step, and heights keep their order.
+    from the top node, or sinks below it in time for those that come at once; every block moves by at most one height
+    a step, and heights keep their order.
     """
     order = list(start)
     height = {block: index for index, block in enumerate(order, start=1)}
     at = {event.step: event for event in events}
-    leaves = {event.block: event.step for event in events if not event.push}
+    leaves = {block: event.step for event in events if not event.push for block in event.blocks}
+    sinks = {
+        event.step - early: len(event.blocks) - early
+        for event in events
+        if event.push
+        for early in range(len(event.blocks))
+    }
     last = max(at, default=-1)
     layer = 0
-    yield from ((0, block, height[block]) for block in order)
     while layer <= last or any(height[block] != index for index, block in enumerate(order, start=1)):
         event = at.get(layer)
         if event is not None and not event.push:
-            order.remove(event.block)
-        size = len(order) + (event is not None and event.push)
+            del order[-len(event.blocks) :]
+        ceiling = top - len(order) - sinks.get(layer, 0)
         for index, block in enumerate(order, start=1):
-            wanted = top - size + index if leaves.get(block, -1) > layer else index
+            wanted = ceiling + index if leaves.get(block, -1) > layer else index
             height[block] += (wanted > height[block]) - (wanted < height[block])
         if event is not None and event.push:
-            order.append(event.block)
-            height[event.block] = top
+            order.extend(event.blocks)
+            height |= {block: top - above for above, block in enumerate(reversed(event.blocks))}
         layer += 1
         yield from ((layer, block, height[block]) for block in order)
-
-
-def _table(gadget: Gadget, pebble: int, visit: TableVisit) -> Iterator[tuple[int, int]]:
-    """Yield (layer, node) of a block's way through the table region; pebble k is picked through v_T^k."""
-    arrived = 0
-    if visit.staged is not None and visit.toppled is not None:
-        yield visit.staged + 1, gadget.node(NodeKind.TOPPLE, visit.location)
-        arrived = visit.toppled + 1
-    yield arrived, gadget.node(NodeKind.TABLE)
-    if visit.picked is not None:
-        yield visit.picked, gadget.node(NodeKind.INTERFACE, index=pebble)

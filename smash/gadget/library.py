@@ -14,8 +14,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import pairwise
 
+from smash.gadget.family import parts_of
 from smash.gadget.graph import EdgeKind, Gadget, GadgetBuilder, NodeKind
 from smash.gadget.topple import TopplePart
+from smash.problem.costs import UNIT_COSTS, Costs
 from smash.problem.model import Instance, PlanOptions
 
 
@@ -53,35 +55,31 @@ def smash_gadget(
     builder = _pick_and_place(locations, height, literal)
     toppled = builder.locations if stacks is None or literal else tuple(stacks)
     most = height if max_topple is None else min(height, max_topple)
-    builder.add_part(TopplePart(toppled, most, return_cost=1 if literal else 2))
+    builder.add_part(TopplePart(toppled, most))
     return builder.build()
 
 
 def gadget_of(instance: Instance, options: PlanOptions | None = None) -> Gadget:
-    """Return the gadget of an instance: `stacks` and `buffers` as locations, topple where the options allow it.
+    """Return the gadget of an instance: `stacks` and `buffers` as locations, a part per aggregating action that it has.
 
-    The table region is part of the gadget also without topple where blocks start on it.
+    What holds blocks at the start (the table region, a carrier) is part of the gadget also where its action is not
+    allowed.
     """
     options = options or PlanOptions()
-    height = len(instance.blocks)
-    if not options.topple and not instance.table:
-        return pick_and_place_gadget(instance.locations, height)
-    stacks = instance.stacks if options.topple else ()
-    return smash_gadget(instance.locations, height, stacks=stacks, max_topple=options.max_topple)
+    builder = _pick_and_place(instance.locations, len(instance.blocks), literal=False, costs=instance.costs)
+    for part in parts_of(instance, options):
+        builder.add_part(part)
+    return builder.build()
 
 
-def _pick_and_place(locations: Iterable[str], height: int, literal: bool) -> GadgetBuilder:
-    builder = GadgetBuilder(locations, height)
+def _pick_and_place(locations: Iterable[str], height: int, literal: bool, costs: Costs = UNIT_COSTS) -> GadgetBuilder:
+    builder = GadgetBuilder(locations, height, costs, literal=literal)
     for location in builder.locations:
-        chain = [builder.add_node(NodeKind.STACK, 1, location, index) for index in range(1, height + 1)]
+        chain = [builder.add_node(NodeKind.STACK, 1, location, index, spot=location) for index in range(1, height + 1)]
         for lower, upper in pairwise(chain):
             builder.add_edge(lower, upper, EdgeKind.CHAIN, 0, 1)
             if not literal:
                 builder.add_edge(upper, lower, EdgeKind.CHAIN, 0, 1)
     if height:
-        for source in builder.locations:
-            for target in builder.locations:
-                if source != target:
-                    cost = 1 if literal else 2
-                    builder.add_edge(builder.top(source), builder.top(target), EdgeKind.TRANSFER, cost, 1)
+        builder.join([builder.top(location) for location in builder.locations])
     return builder

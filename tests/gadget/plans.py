@@ -7,9 +7,9 @@ from tests.strategies import instances
 
 
 @st.composite
-def walks(draw, most_actions=14, options=None, **shape):
+def walks(draw, most_actions=14, options=None, drawn=instances, **shape):
     """Draw an instance and a legal plan for it (its goal is left aside)."""
-    instance = draw(instances(**shape))
+    instance = draw(drawn(**shape))
     law, state, actions = Law(instance, options or PlanOptions()), State.start_of(instance), []
     for _ in range(draw(st.integers(0, most_actions))):
         legal = list(law.legal_actions(state))

@@ -1,9 +1,11 @@
 """The paper's claim: a legal plan is a pebble motion on the gadget, and the motion gives a plan back."""
 
 import itertools
+from random import Random
 
 import pytest
 from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from smash.gadget import gadget_of
 from smash.gadget.decode import decode
@@ -11,6 +13,7 @@ from smash.gadget.encode import encode
 from smash.gadget.motion import PebbleMotion, motion_fault, settled
 from smash.problem import IllegalAction, Law, Pick, Place, PlanOptions, StacksGoal, State, Topple, make_instance
 from tests.gadget.plans import walks
+from tests.strategies import family_instances, family_options
 
 
 def put_backs(actions):
@@ -40,6 +43,63 @@ def test_every_legal_plan_is_a_motion_of_the_same_cost_that_decodes_to_the_same_
     decoded = decode(motion, instance)
     assert len(decoded) == motion.cost
     assert final_state(instance, decoded).key() == state.key()
+
+
+def price_of_put_backs(instance, actions):
+    """Return what the pairs cost that `put_backs` counts."""
+    return put_backs(actions) * (instance.costs.of("pick") + instance.costs.of("place"))
+
+
+@settings(max_examples=100, deadline=None)
+@given(walks(most_actions=18, drawn=family_instances, max_blocks=5, max_buffers=2))
+def test_plans_of_the_whole_family_are_motions_of_the_same_cost(walk):
+    instance, actions, state = walk
+    motion = encode(instance, actions)
+    assert motion_fault(motion) is None
+    assert motion.cost == Law(instance).price(actions) - price_of_put_backs(instance, actions)
+    assert motion.layers[-1] == settled(motion.gadget, instance.blocks, state)
+    decoded = decode(motion, instance)
+    assert Law(instance).price(decoded) == motion.cost
+    after = final_state(instance, decoded)
+    assert after.key() == state.key()
+
+
+@settings(max_examples=60, deadline=None)
+@given(family_instances(max_stacks=2), family_options(), st.integers(0, 10**6))
+def test_every_motion_that_obeys_the_rules_is_a_legal_plan_of_its_cost(instance, options, seed):
+    """Random walks of the pebbles, step by step: those that break no rule decode to a plan of the motion's cost."""
+    motion = random_motion(Random(seed), instance, gadget_of(instance, options))
+    decoded = decode(motion, instance, options)
+    assert Law(instance, options).price(decoded) == motion.cost
+
+
+def random_motion(random, instance, gadget, steps=14):
+    """Draw a motion that breaks no rule (where it ends apart), by trying random moves of some pebbles a step."""
+    layers, active = [settled(gadget, instance.blocks, State.start_of(instance))], []
+    for _ in range(steps):
+        for _ in range(8):
+            there, activated = one_more_layer(gadget, layers[-1], random)
+            fault = motion_fault(PebbleMotion(gadget, instance.blocks, (layers[-1], there), (activated,)))
+            if fault is None or "ends in" in fault:
+                layers.append(there)
+                active.append(activated)
+                break
+    return PebbleMotion(gadget, instance.blocks, tuple(layers), tuple(active))
+
+
+def one_more_layer(gadget, here, random):
+    """Move some pebbles at random; those that an activation can move mostly together."""
+    active = random.randrange(len(gadget.aggregates)) if gadget.aggregates and random.random() < 0.4 else None
+    edges = () if active is None else [gadget.edges[number] for number in gadget.aggregates[active].edges]
+    together = {edge.tail: edge.head for edge in edges}
+    there = []
+    for node in here:
+        ways = [gadget.edges[e].head for e in gadget.outgoing[node] if e not in gadget.activations]
+        if node in together and random.random() < 0.9:
+            there.append(together[node])
+        else:
+            there.append(random.choice(ways) if ways and random.random() < 0.4 else node)
+    return tuple(there), active
 
 
 @settings(max_examples=50, deadline=None)

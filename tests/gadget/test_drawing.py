@@ -71,7 +71,7 @@ def test_captions_say_the_actions_of_each_step(odd):
 
 
 def test_a_strip_has_the_start_the_staged_blocks_what_follows_and_the_end():
-    assert strip_layers(["", "topple s1 from height 2", "", ""]) == [0, 1, 2, 4]
+    assert strip_layers(["", "topple s1 from height 2", "", ""], [1]) == [0, 1, 2, 4]
     assert len(strip_layers(["x"] * 100)) == 12
 
 

@@ -22,9 +22,10 @@ from smash.problem import Law, OnGoal, PlanOptions, PositionsGoal, StacksGoal, m
 from smash.problem.files import read_instance
 from smash.problem.generators import generate
 from smash.problem.suites import read_suite
+from tests.cheapest import cheapest_plan
 from tests.gadget.plans import walks
 from tests.oracle import optimal_cost
-from tests.strategies import instances, plan_options
+from tests.strategies import family_instances, family_options, instances, plan_options
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -55,6 +56,57 @@ def agree_with_exhaustive_search(instance, options, budget=20.0):
 @given(instances(max_blocks=3, max_stacks=3, max_buffers=1, odd_names=True), plan_options())
 def test_small_instances_of_every_kind_agree_with_exhaustive_search(instance, options):
     assert agree_with_exhaustive_search(instance, options).status in ("optimal", "infeasible")
+
+
+def agree_with_uniform_cost_search(instance, options, budget=10.0):
+    """The same for the whole family and any costs; the cheapest plan is in the model of the steps of its cost."""
+    try:
+        found = cheapest_plan(instance, options, most_states=20_000)
+    except MemoryError:
+        return
+    result = solve(instance, SolveOptions(options.topple, options.max_topple, without=options.without), budget)
+    assert "refusals" not in result.details
+    if found is None:
+        assert result.actions is None
+        return
+    cost, actions = found
+    assert result.status != "infeasible"
+    assert result.lower_bound is None or result.lower_bound <= cost
+    if result.actions is not None:
+        assert Law(instance, options).price(result.actions) == result.cost >= cost
+    if result.status == "optimal":
+        assert result.cost == cost
+    if cost:
+        the_model_holds(instance, options, actions, cost)
+
+
+def the_model_holds(instance, options, actions, cost):
+    """A cheapest plan fits into the steps of its cost, and is a solution of that model, at its cost."""
+    scope = scope_of(instance, options)
+    bound = step_bound(scope, options)
+    steps = bound.steps(cost)
+    motion = motion_of(scope, instance, actions)
+    assert motion_fault(motion) is None
+    assert bound.least_cost <= cost
+    assert motion.steps <= steps
+    model = build(scope, reaches_of(scope), steps)
+    vector = model.vector(motion)
+    assert vector is not None
+    assert model.milp.objective @ vector == cost
+    assert model.motion(vector) == motion.padded(steps)
+
+
+@settings(max_examples=15, deadline=None)
+@given(family_instances(max_blocks=2), family_options())
+def test_the_whole_family_agrees_with_uniform_cost_search(instance, options):
+    agree_with_uniform_cost_search(instance, options, 3.0)
+
+
+@pytest.mark.slow
+@settings(max_examples=150, deadline=None)
+@given(family_instances(max_blocks=3), family_options())
+def test_the_whole_family_agrees_with_uniform_cost_search_on_3_blocks(instance, options):
+    agree_with_uniform_cost_search(instance, options)
 
 
 @pytest.mark.slow

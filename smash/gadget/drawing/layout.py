@@ -1,7 +1,8 @@
 """Where the nodes of a gadget are drawn.
 
 Every location is a column, heights upward, its tops in one line. The TOPPLE node of a stack stands left of its
-top; the TABLE node is a long bar under all columns; the interface nodes are a column of their own on the right.
+top; the TABLE node is a long bar under all columns; the interface nodes are a column of their own on the right. Every
+carrier is a row of its own above all that, a box for each station.
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ Point = tuple[float, float]
 
 SIDE = 0.95
 """Distance of a TOPPLE node from its column."""
+DECK = 1.15
+"""Half the width of a carrier's box, and the height of its row."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +30,7 @@ class Layout:
         interface: x of the interface column, or None.
         crest: y of the highest transfer arc.
         bus: y of the line that leads from the interface nodes to the tops.
+        deck: y of the line that joins the carriers with the tops, or None.
     """
 
     nodes: tuple[Point, ...]
@@ -35,6 +39,14 @@ class Layout:
     interface: float | None
     crest: float
     bus: float
+    deck: float | None = None
+
+    @property
+    def top(self) -> float:
+        """Upper end of everything."""
+        if self.deck is not None:
+            return max(y for _, y in self.nodes) + 0.75
+        return self.bus + 0.3 if self.interface is not None else self.crest + 0.2
 
     @property
     def left(self) -> float:
@@ -54,7 +66,7 @@ def arc_height(span: float, width: float) -> float:
 
 def lay_out(gadget: Gadget) -> Layout:
     """Place the nodes of a gadget."""
-    toppled = {gadget.nodes[aggregate.gather].location for aggregate in gadget.aggregates}
+    toppled = {aggregate.locks for aggregate in gadget.aggregates}
     columns: dict[str, float] = {}
     right = -1.3
     for location in gadget.locations:
@@ -66,8 +78,11 @@ def lay_out(gadget: Gadget) -> Layout:
     first = min(columns.values(), default=0.0)
     crest = arc_height(right - first, right - first) if len(columns) > 1 else 0.45
     bar = (first - SIDE - 0.6, right + 2.6, bottom - 1.75) if has_table else None
+    bus = crest + 0.45
+    deck = bus + 0.45 if gadget.tokens else None
+    decks = _decks(gadget, (first + right) / 2, bus + 1.35)
     nodes: list[Point] = []
-    for node in gadget.nodes:
+    for number, node in enumerate(gadget.nodes):
         key = node.key
         match key.kind:
             case NodeKind.STACK:
@@ -81,4 +96,16 @@ def lay_out(gadget: Gadget) -> Layout:
                 nodes.append(((bar[0] + bar[1]) / 2, bar[2]))
             case NodeKind.INTERFACE:
                 nodes.append((right + 1.9, float(key.index - gadget.height)))
-    return Layout(tuple(nodes), columns, bar, interface, crest, crest + 0.45)
+            case NodeKind.CARRIER:
+                nodes.append(decks[number])
+    return Layout(tuple(nodes), columns, bar, interface, crest, bus, deck)
+
+
+def _decks(gadget: Gadget, middle: float, lowest: float) -> dict[int, Point]:
+    """Return the place of every carrier's node: a row per carrier, around `middle`, the first one at `lowest`."""
+    places: dict[int, Point] = {}
+    for row, token in enumerate(gadget.tokens):
+        for number, node in enumerate(token.nodes.values()):
+            x = middle + (number - (len(token.nodes) - 1) / 2) * 3.4
+            places[node] = (x, lowest + row * DECK)
+    return places

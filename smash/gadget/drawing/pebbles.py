@@ -3,15 +3,26 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from smash.gadget.decode import step_actions
 from smash.gadget.drawing.figure import SCALE, frame, paint_gadget, vertical_extent
-from smash.gadget.drawing.layout import Layout, Point, lay_out
-from smash.gadget.drawing.style import INK, RADIUS, STILLS, block_colours, check_suffix, ink_on, new_figure, save, short
+from smash.gadget.drawing.layout import DECK, Layout, Point, lay_out
+from smash.gadget.drawing.style import (
+    BLUE,
+    INK,
+    RADIUS,
+    STILLS,
+    block_colours,
+    check_suffix,
+    ink_on,
+    new_figure,
+    save,
+    short,
+)
 from smash.gadget.graph import NodeKind
 from smash.gadget.motion import PebbleMotion
 from smash.problem.errors import MalformedFile
@@ -65,12 +76,13 @@ def _words(actions: Sequence[Action]) -> Iterator[str]:
 
 
 def places(motion: PebbleMotion, layout: Layout, layer: int) -> list[Point]:
-    """Return where each pebble is drawn at a layer; pebbles that share a node stand beside each other."""
+    """Return where each block is drawn at a layer, then each token; blocks in one node stand beside each other."""
     nodes = motion.gadget.nodes
-    held = Counter(motion.layers[layer])
+    blocks = motion.layers[layer][: len(motion.blocks)]
+    held = Counter(blocks)
     seen: Counter[int] = Counter()
     points = []
-    for number in motion.layers[layer]:
+    for number in blocks:
         x, y = layout.nodes[number]
         place = seen[number]
         seen[number] += 1
@@ -79,16 +91,22 @@ def places(motion: PebbleMotion, layout: Layout, layer: int) -> list[Point]:
             x = layout.bar[0] + 0.6 + place * pitch
         elif nodes[number].kind is NodeKind.TOPPLE:
             y += min(0.62, layout.crest / max(1, held[number] - 1)) * place
+        elif nodes[number].kind is NodeKind.CARRIER:
+            x += min(2.2 * RADIUS, 2 * (DECK - RADIUS) / max(1, held[number] - 1)) * (place - (held[number] - 1) / 2)
         points.append((x, y))
-    return points
+    return points + [layout.nodes[number] for number in motion.layers[layer][len(motion.blocks) :]]
 
 
 def _paint_pebbles(axes: Axes, motion: PebbleMotion, points: Sequence[Point]) -> list[Artist]:
-    from matplotlib.patches import Circle
+    from matplotlib.patches import Circle, FancyBboxPatch
 
     colours = block_colours(motion.blocks)
     artists: list[Artist] = []
-    for block, (x, y) in zip(motion.blocks, points, strict=True):
+    for x, y in points[len(motion.blocks) :]:
+        corner, shape = (x - DECK, y - RADIUS), "round,pad=0,rounding_size=0.1"
+        box = FancyBboxPatch(corner, 2 * DECK, 2 * RADIUS, boxstyle=shape, fc="none", ec=BLUE, lw=2.0, zorder=4)
+        artists.append(axes.add_patch(box))
+    for block, (x, y) in zip(motion.blocks, points, strict=False):
         pebble = Circle((x, y), RADIUS * 0.94, facecolor=colours[block], edgecolor="white", linewidth=0.8, zorder=5)
         artists.append(axes.add_patch(pebble))
         size = 7.0 if len(short(block)) <= 2 else 5.5
@@ -108,14 +126,14 @@ def _paint_pebbles(axes: Axes, motion: PebbleMotion, points: Sequence[Point]) ->
     return artists
 
 
-def strip_layers(captions: Sequence[str]) -> list[int]:
+def strip_layers(captions: Sequence[str], staged: Collection[int] = ()) -> list[int]:
     """Return the layers that a strip shows, at most `MOST_FRAMES`.
 
-    They are the start, the staged blocks before each topple, what follows each action, and the end.
+    They are the start, the layers in `staged` (with the blocks staged for an activation), what follows each action,
+    and the end.
     """
-    staged = {step for step, caption in enumerate(captions) if caption.startswith("topple")}
     after = {step + 1 for step, caption in enumerate(captions) if caption}
-    chosen = sorted({0, len(captions)} | staged | after)
+    chosen = sorted({0, len(captions)} | set(staged) | after)
     if len(chosen) <= MOST_FRAMES:
         return chosen
     return [chosen[round(index * (len(chosen) - 1) / (MOST_FRAMES - 1))] for index in range(MOST_FRAMES)]
@@ -125,7 +143,8 @@ def _strip(motion: PebbleMotion, captions: list[str], path: Path) -> None:
     layout = lay_out(motion.gadget)
     low, high = vertical_extent(motion.gadget, layout)
     wide, tall = SCALE * (layout.right - layout.left + 2.6), SCALE * (high - low) + 0.3
-    layers = strip_layers(captions)
+    staging = motion.gadget.staging
+    layers = strip_layers(captions, [step for step in range(motion.steps) if motion.active_in(step) in staging])
     columns = min(len(layers), (5 if len(layers) == 5 else 4) if wide < 5 else 2)
     rows = -(-len(layers) // columns)
     figure = new_figure(columns * wide, rows * tall)

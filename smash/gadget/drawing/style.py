@@ -16,6 +16,9 @@ GREY = "#8a8f99"
 PALE = "#eceef2"
 PINK = "#d6337c"
 PALE_PINK = "#fbe3ee"
+BLUE = "#2f6db5"
+PALE_BLUE = "#e2edf8"
+GREEN = "#2f8f5b"
 RADIUS = 0.31
 """Radius of a node, in units of one height."""
 

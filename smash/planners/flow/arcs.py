@@ -40,19 +40,19 @@ class Arcs:
 
 
 def reaches_of(scope: Scope) -> dict[int, Reach]:
-    """Return the distances of every moving pebble."""
-    return {pebble: reach_of(scope, pebble) for pebble in scope.moving}
+    """Return the distances of every moving pebble and every token."""
+    return {pebble: reach_of(scope, pebble) for pebble in scope.pebbles}
 
 
 def count_arcs(scope: Scope, reaches: dict[int, Reach], horizon: int) -> int:
     """Return how many arcs there are, without making them."""
-    return int(sum(_windows(scope, reaches[pebble], horizon)[3].sum() for pebble in scope.moving))
+    return int(sum(_windows(scope, reaches[pebble], horizon)[3].sum() for pebble in scope.pebbles))
 
 
 def arcs_of(scope: Scope, reaches: dict[int, Reach], horizon: int) -> Arcs:
     """Make the arcs of a horizon: those on a path from the pebble's start to its goal that fits into it."""
     columns: list[list[Ints]] = [[], [], [], [], []]
-    for pebble in scope.moving:
+    for pebble in scope.pebbles:
         edge, (tail, head), first, length = _windows(scope, reaches[pebble], horizon)
         row = np.repeat(np.arange(len(edge)), length)
         offset = np.arange(len(row)) - np.repeat(np.cumsum(length) - length, length)

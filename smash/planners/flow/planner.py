@@ -30,6 +30,8 @@ class FlowPlanner(BasePlanner):
 
     summary: ClassVar[str] = "the paper's time-expanded flow on the gadget, as a MILP (HiGHS)"
     proves: ClassVar[bool] = True
+    aggregating: ClassVar[frozenset[str]] = frozenset({"topple", "carry", "lift"})
+    weighs: ClassVar[bool] = True
 
     def prepare(self) -> None:
         """Load numpy, scipy's sparse matrices and HiGHS."""

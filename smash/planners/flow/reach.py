@@ -6,7 +6,6 @@ blocks as at the start, and below one that has come to its goal position as many
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -39,7 +38,7 @@ def reach_of(scope: Scope, pebble: int) -> Reach:
     forward, backward = _adjacency(pairs), _adjacency([(head, tail) for tail, head in pairs])
     start = scope.start[pebble]
     earliest = _distances(scope, forward, start)
-    goal = scope.goal[pebble]
+    goal = scope.goal_of(pebble)
     if goal is not None:
         togo = _distances(scope, backward, goal)
     else:
@@ -51,24 +50,22 @@ def _distances(scope: Scope, adjacency: Mapping[int, Sequence[int]], source: int
     """Return distances from a settled node, along edges or against them.
 
     While the pebble stays in that pile it is at its height or above; every other node, the lower ones of the pile
-    included, is reached through the pile's top.
+    included, is reached through the nodes that edges lead out of (or, backward, into) the pile.
     """
     gadget = scope.gadget
     node = gadget.nodes[source]
     count = len(gadget.nodes)
     if node.kind is not NodeKind.STACK or node.location is None:
         return _spread(adjacency, [(source, 0)], count)
-    rise = gadget.height - node.key.index
-    top = gadget.top(node.location)
+    pile = range(node.key.index, gadget.height + 1)
+    inside = [gadget.stack_node(node.location, height) for height in pile]
+    below = {gadget.stack_node(node.location, height) for height in range(1, gadget.height + 1)}
     outside = [
-        (head, rise + 1)
-        for head in adjacency.get(top, ())
-        if gadget.nodes[head].location != node.location or (gadget.nodes[head].kind is not NodeKind.STACK)
+        (head, steps + 1) for steps, at in enumerate(inside) for head in adjacency.get(at, ()) if head not in below
     ]
     distances = _spread(adjacency, outside, count)
-    for height in range(node.key.index, gadget.height + 1):
-        inside = gadget.stack_node(node.location, height)
-        distances[inside] = min(distances[inside], height - node.key.index)
+    for steps, at in enumerate(inside):
+        distances[at] = min(distances[at], steps)
     return distances
 
 
@@ -80,15 +77,17 @@ def _adjacency(pairs: Iterable[tuple[int, int]]) -> dict[int, list[int]]:
 
 
 def _spread(adjacency: Mapping[int, Sequence[int]], seeds: Iterable[tuple[int, int]], count: int) -> list[int]:
-    """Breadth-first distances from seeds that are given with theirs (all alike)."""
+    """Breadth-first distances from seeds that are given with theirs."""
     distances = [FAR] * count
-    queue = deque(seeds)
-    for node, distance in queue:
-        distances[node] = distance
-    while queue:
-        node, distance = queue.popleft()
-        for head in adjacency.get(node, ()):
-            if distances[head] == FAR:
-                distances[head] = distance + 1
-                queue.append((head, distance + 1))
+    waiting: dict[int, list[int]] = {}
+    for node, distance in seeds:
+        waiting.setdefault(distance, []).append(node)
+    distance = min(waiting, default=0)
+    while waiting:
+        for node in waiting.pop(distance, ()):
+            if distances[node] <= distance:
+                continue
+            distances[node] = distance
+            waiting.setdefault(distance + 1, []).extend(adjacency.get(node, ()))
+        distance += 1
     return distances

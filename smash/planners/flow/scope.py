@@ -2,11 +2,16 @@
 
 Three things are left out because some optimal plan does without them (each is independent of the time index):
 
-- a block of the correct bottom part of its goal pile never moves;
+- a block of the correct bottom part of its goal pile never moves: take its moves out of a plan, and what the others do
+  stays legal, ends alike and costs no more, whatever the actions and their costs;
 - buffers beyond the number of moving blocks stay empty, and where that many start empty, each block has
-  one of its own, in which nothing buries it (buffers are interchangeable);
+  one of its own, in which nothing buries it (buffers are interchangeable). Not where distances cost, for there they
+  differ, nor where several blocks are put on a pile at once;
 - from where nothing can bury it (the table region, a buffer of its own) a block moves to its goal pile alone,
-  and from the table region to no buffer of its own. (`on` goals excepted: any location may serve them.)
+  and from the table region to no buffer of its own. (`on` goals excepted: any location may serve them.) Not where
+  several blocks are put on a pile at once, for it may have to be among them, nor where distances cost and a carrier
+  takes it along for less. With distances alone the direct way is the cheapest: rounding gains less than a pick and a
+  place cost.
 
 All v_T^i are joined to the same nodes; pebble k is picked through v_T^k.
 """
@@ -18,6 +23,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from smash.gadget import EdgeKind, Gadget, NodeKind, gadget_of
+from smash.gadget.family import parts_of
 from smash.gadget.motion import settled
 from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal, State
 
@@ -33,6 +39,7 @@ class Scope:
         start: the node of every pebble at the start.
         goal: per pebble its goal node, or None where the goal does not name its position.
         own_buffer: per pebble its own buffer, or None.
+        direct: whether a block moves from where nothing can bury it to its goal pile alone.
     """
 
     instance: Instance
@@ -41,11 +48,26 @@ class Scope:
     start: tuple[int, ...]
     goal: tuple[int | None, ...]
     own_buffer: tuple[str | None, ...]
+    direct: bool = True
+
+    @property
+    def blocks(self) -> int:
+        """Number of blocks; the pebbles from this number on are the tokens."""
+        return len(self.instance.blocks)
+
+    @property
+    def pebbles(self) -> tuple[int, ...]:
+        """Numbers of the pebbles that may move, then of the tokens."""
+        return (*self.moving, *range(self.blocks, self.blocks + len(self.gadget.tokens)))
+
+    def goal_of(self, pebble: int) -> int | None:
+        """Return the node at which a pebble has to be at the end, or None."""
+        return self.goal[pebble] if pebble < self.blocks else None
 
     @cached_property
     def fixed_nodes(self) -> frozenset[int]:
         """Nodes of the blocks that never move."""
-        moving = set(self.moving)
+        moving = set(self.pebbles)
         return frozenset(node for pebble, node in enumerate(self.start) if pebble not in moving)
 
     @cached_property
@@ -59,12 +81,14 @@ class Scope:
 
     def final_nodes(self, pebble: int) -> frozenset[int]:
         """Return the nodes at which a pebble may be at the end."""
+        if pebble >= self.blocks:
+            return frozenset(self.gadget.tokens[pebble - self.blocks].nodes.values())
         goal = self.instance.goal
         at = self.goal[pebble]
         if at is not None:
             return frozenset((at,))
         resting = {
-            number for number, node in enumerate(self.gadget.nodes) if node.kind in (NodeKind.STACK, NodeKind.TABLE)
+            number for number, node in enumerate(self.gadget.nodes) if not node.kind.transient
         } - self.fixed_nodes
         if not isinstance(goal, OnGoal):
             return frozenset(resting)
@@ -79,6 +103,9 @@ class Scope:
 
     def _may_take(self, pebble: int, number: int) -> bool:
         edge = self.gadget.edges[number]
+        if pebble >= self.blocks:
+            active = self.gadget.activations.get(number)
+            return active is not None and self.gadget.aggregates[active].token == pebble - self.blocks
         tail, head = self.gadget.nodes[edge.tail], self.gadget.nodes[edge.head]
         if edge.tail in self.fixed_nodes or edge.head in self.fixed_nodes:
             return False
@@ -89,7 +116,7 @@ class Scope:
                 node.location != self.own_buffer[pebble] or edge.kind is EdgeKind.CHAIN
             ):
                 return False
-        if isinstance(self.instance.goal, OnGoal):
+        if not self.direct:
             return True
         unburied = edge.kind is EdgeKind.RETURN or tail.location in self.own_buffers
         if edge.kind is EdgeKind.CHAIN or not unburied or tail.kind is NodeKind.TABLE:
@@ -102,7 +129,10 @@ def scope_of(instance: Instance, options: PlanOptions) -> Scope:
     """Return the scope of an instance, whose start must not be its goal."""
     correct = correct_blocks(instance)
     moving = tuple(number for number, block in enumerate(instance.blocks) if block not in correct)
-    instance, own = _needed_buffers(instance, moving)
+    several, distances = can_stack_several(instance, options), bool(instance.costs.travel)
+    own: tuple[str | None, ...] = (None,) * len(instance.blocks)
+    if not several and not distances:
+        instance, own = _needed_buffers(instance, moving)
     gadget = gadget_of(instance, options)
     goal = goal_positions(instance)
     return Scope(
@@ -112,7 +142,13 @@ def scope_of(instance: Instance, options: PlanOptions) -> Scope:
         start=settled(gadget, instance.blocks, State.start_of(instance)),
         goal=tuple(gadget.stack_node(*goal[block]) if block in goal else None for block in instance.blocks),
         own_buffer=own,
+        direct=not (isinstance(instance.goal, OnGoal) or several or (distances and gadget.tokens)),
     )
+
+
+def can_stack_several(instance: Instance, options: PlanOptions) -> bool:
+    """Return whether some aggregating action of the instance puts several blocks on a pile at once."""
+    return any(part.stacks_several for part in parts_of(instance, options))
 
 
 def goal_positions(instance: Instance) -> dict[str, tuple[str, int]]:

@@ -64,7 +64,7 @@ class FlowSearch:
         self.scope = scope_of(self.instance, self.options)
         self.bound = step_bound(self.scope, self.options)
         self.reaches = reaches_of(self.scope)
-        self.log.prove(2 * self.bound.moves, "moves")
+        self.log.prove(self.bound.least_cost, "moves")
         self.details["models"] = []
 
     def first_horizon(self) -> int:
@@ -75,7 +75,7 @@ class FlowSearch:
         """
         shortest = max(reach.shortest for reach in self.reaches.values())
         moves = self.bound.moves or len(self.scope.moving)
-        horizon = max(1, shortest + moves + moves // 3 + (2 if self.options.topple else 0))
+        horizon = max(1, shortest + moves + moves // 3 + (2 if self.scope.gadget.staging else 0))
         return horizon if self.log.best is None else max(horizon, self._steps_of_best())
 
     def run(self) -> None:
@@ -165,10 +165,17 @@ class FlowSearch:
 
     def _raise_bound(self, horizon: int, result: MilpResult) -> None:
         """Take the model's bound as far as the horizon holds all plans below it."""
-        most = self.log.cost if self.log.cost is not None else horizon * (1 + len(self.scope.gadget.locations))
+        most = self.log.cost if self.log.cost is not None else self._most_in(horizon)
         fits = self.bound.fitting_cost(horizon, most) + 1
         proves = fits if result.status == "infeasible" else min(fits, _rounded(result.bound))
         self.log.prove(proves, "milp")
+
+    def _most_in(self, horizon: int) -> int:
+        """Return a cost that no motion of `horizon` steps exceeds."""
+        gadget = self.scope.gadget
+        transfer = max((edge.cost for edge in gadget.edges if edge.kind.picks), default=0)
+        activation = max((aggregate.cost for aggregate in gadget.aggregates), default=0)
+        return horizon * (activation + transfer * len(gadget.locations))
 
 
 def check_gadget_size(instance: Instance, seconds: float = math.inf) -> None:

@@ -7,13 +7,15 @@ from collections.abc import Sequence
 from smash.gadget.encode import encode
 from smash.gadget.motion import PebbleMotion
 from smash.planners.flow.scope import Scope
-from smash.problem.family import kind_of
-from smash.problem.model import TABLE, Action, Aggregating, Instance, Pick, Place, State
+from smash.problem.model import Action, Aggregating, Instance, Pick, Place, State
+from smash.problem.rules import Law
 
 
 def motion_of(scope: Scope, instance: Instance, actions: Sequence[Action]) -> PebbleMotion:
     """Return the motion of a legal plan of `instance` on the gadget of `scope`."""
-    motion = encode(scope.instance, _Renaming(scope, instance).run(actions), scope.gadget)
+    if scope.instance.buffers != instance.buffers or scope.own_buffers:
+        actions = _Renaming(scope, instance).run(actions)
+    motion = encode(scope.instance, actions, scope.gadget)
     gadget = scope.gadget
     lifted = {
         gadget.stack_node(buffer, height): gadget.top(buffer)
@@ -21,16 +23,19 @@ def motion_of(scope: Scope, instance: Instance, actions: Sequence[Action]) -> Pe
         for height in range(1, gadget.height + 1)
     }
     layers = tuple(tuple(lifted.get(node, node) for node in layer) for layer in motion.layers)
-    return PebbleMotion(gadget, motion.blocks, layers)
+    return PebbleMotion(gadget, motion.blocks, layers, motion.active)
 
 
 class _Renaming:
-    """Replays a plan with other buffers: a block's own one, else any that is free (buffers are interchangeable)."""
+    """Replays a plan with other buffers: a block's own one, else any that is free.
+
+    Only where buffers are interchangeable; no aggregating action names one then.
+    """
 
     def __init__(self, scope: Scope, instance: Instance) -> None:
         self._scope = scope
         self._own = dict(zip(scope.instance.blocks, scope.own_buffer, strict=True))
-        self._state = State.start_of(instance)
+        self._law, self._state = Law(instance), State.start_of(instance)
         self._used = {buffer for buffer in instance.buffers if instance.start[buffer]}
         self._name = {location: location for location in (*instance.stacks, *self._used)}
         self._at = {block: location for location, pile in instance.start.items() for block in pile}
@@ -45,26 +50,27 @@ class _Renaming:
                 case Place(block, target):
                     renamed.append(self._place(block, target))
                 case Aggregating():
-                    kind_of(action).apply(self._state, action)
                     renamed.append(action)
+            self._law.apply(self._state, action)
         return renamed
 
     def _pick(self, block: str, source: str) -> Pick:
-        if source == TABLE:
-            return Pick(block, TABLE)
-        self._state.piles[source].pop()
-        if source in self._buffers and not self._state.piles[source] and source not in self._used:
+        pile = self._state.piles.get(source)
+        if pile is None:
+            return Pick(block, source)
+        if source in self._buffers and len(pile) == 1 and source not in self._used:
             self._name.pop(source, None)
         return Pick(block, self._at.pop(block))
 
     def _place(self, block: str, target: str) -> Place:
+        if target not in self._state.piles:
+            return Place(block, target)
         own = self._own[block]
         if target in self._buffers and target not in self._used and own is not None:
             name = own
         else:
             name = self._name.get(target) or self._free_buffer()
             self._name[target] = name
-        self._state.piles[target].append(block)
         self._at[block] = name
         return Place(block, name)
 
