@@ -96,6 +96,8 @@ class FlowSearch:
             if result.status not in ("optimal", "infeasible") or self.options.horizon is not None:
                 return
             horizon = self._next_horizon(horizon)
+        if not self.details["models"]:
+            self.details["stopped"] = f"the time was up before the model of horizon {horizon} was begun"
 
     def _next_horizon(self, horizon: int) -> int:
         if self.log.cost is None:
