@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Literal
@@ -111,6 +111,10 @@ class MilpBuilder:
         """Number of columns so far."""
         return self._columns
 
+    def costs(self) -> Floats:
+        """Return the objective so far, shape (columns,)."""
+        return _joined(self._costs)
+
     def add_columns(
         self,
         count: int,
@@ -163,6 +167,39 @@ class MilpBuilder:
         """Append one row."""
         where = np.asarray(columns, dtype=np.int64).ravel()
         self.add_rows(np.zeros(len(where)), where, values, count=1, lower=lower, upper=upper)
+
+    def add_sums(
+        self, terms: Sequence[tuple[Ints, float]], *, lower: ArrayLike = -np.inf, upper: ArrayLike = np.inf
+    ) -> None:
+        """Append rows that sum arrays of columns: row r is the sum over the terms of `value * columns[r]`.
+
+        Args:
+            terms: arrays of columns, each of shape (rows, ...), with their value; columns of -1 are left out.
+            lower: lower sides, shape (rows,) or one for all.
+            upper: upper sides, shape (rows,) or one for all.
+
+        Raises:
+            OutOfTime: where the deadline has passed.
+        """
+        count = terms[0][0].shape[0]
+        if not count:
+            return
+        rows, columns, values = [], [], []
+        for block, value in terms:
+            flat = block.reshape(count, math.prod(block.shape[1:]))
+            index = np.broadcast_to(np.arange(count)[:, None], flat.shape)
+            there = flat >= 0
+            rows.append(index[there])
+            columns.append(flat[there])
+            values.append(np.full(int(there.sum()), value))
+        self.add_rows(
+            np.concatenate(rows),
+            np.concatenate(columns),
+            np.concatenate(values),
+            count=count,
+            lower=lower,
+            upper=upper,
+        )
 
     def build(self, name: Callable[[int], str] = str) -> Milp:
         """Return the model.

@@ -10,6 +10,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
+from smash.problem.family import kinds_of
 from smash.problem.model import Action, Instance
 
 if TYPE_CHECKING:
@@ -34,11 +35,13 @@ class LayeredPlanner(BasePlanner):
 
     With unbounded buffers and a horizon that holds every plan, the model's optimum bounds the cost of all plans; a
     solution of that cost whose blocks find a place to rest is optimal. A short horizon comes first: it proves
-    nothing, and gives the first plans.
+    nothing, and gives the first plans. Instances with carry, lift or costs have a model of their own (`family`).
     """
 
     summary: ClassVar[str] = "the SMASH gadget with its free chain edges contracted, as a MILP (HiGHS)"
     proves: ClassVar[bool] = True
+    aggregating: ClassVar[frozenset[str]] = frozenset({"topple", "carry", "lift"})
+    weighs: ClassVar[bool] = True
 
     def prepare(self) -> None:
         """Load the solver and the arrays, so that no import is counted as planning."""
@@ -56,18 +59,33 @@ class LayeredPlanner(BasePlanner):
         on_incumbent: OnIncumbent | None = None,
     ) -> PlanResult:
         """Plan for at most `budget` seconds of wall time."""
-        log = IncumbentLog(instance, options, on_incumbent, gentle=True)
+        plain = _plain(instance, options)
+        log = IncumbentLog(instance, options, on_incumbent, gentle=plain)
         impossible = log.without_plan()
         if impossible is not None:
             return impossible
+        if not plain:
+            from smash.planners.layered.family.solve import FamilySolve
+
+            return FamilySolve(instance, options, budget, log).run()
         return _Solve(instance, options, budget, log).run()
 
     def build_model(self, instance: Instance, options: SolveOptions) -> Milp:
-        """Return the MILP of the relaxation at the sound horizon, or at `options.horizon`."""
+        """Return the MILP of the relaxation at the sound horizon (of the family: a short one), or `options.horizon`."""
+        if not _plain(instance, options):
+            from smash.planners.layered.family.solve import first_model
+
+            return first_model(instance, options)
         from smash.planners.layered.events import LayeredProblem, build_layered
 
         problem = LayeredProblem.of(instance, options)
         return build_layered(problem, options, options.horizon or problem.sound_horizon).milp
+
+
+def _plain(instance: Instance, options: SolveOptions) -> bool:
+    """Whether the three-node model holds the instance: every action costs 1, and topple alone aggregates."""
+    further = any(kind.name != "topple" for kind in kinds_of(instance, options))
+    return instance.costs.plain and not further and not any(carrier.holds for carrier in instance.carriers)
 
 
 class _Solve:

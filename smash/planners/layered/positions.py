@@ -112,30 +112,8 @@ class _Builder:
     def _columns(self, shape: tuple[int, ...], cost: float = 0.0) -> Ints:
         return self.milp.add_columns(int(np.prod(shape)), cost=cost).reshape(shape)
 
-    def _rows(self, terms: list[tuple[Ints, float]], *, lower: float = -np.inf, upper: float = np.inf) -> None:
-        """Add rows: row r sums `values * columns[r, :]` over the terms; columns of -1 are left out."""
-        count = terms[0][0].shape[0]
-        if not count:
-            return
-        rows, columns, values = [], [], []
-        for block, value in terms:
-            flat = block.reshape(count, -1)
-            index = np.broadcast_to(np.arange(count)[:, None], flat.shape)
-            there = flat >= 0
-            rows.append(index[there])
-            columns.append(flat[there])
-            values.append(np.full(int(there.sum()), value))
-        self.milp.add_rows(
-            np.concatenate(rows),
-            np.concatenate(columns),
-            np.concatenate(values),
-            count=count,
-            lower=lower,
-            upper=upper,
-        )
-
     def _fix(self, columns: Ints, value: float) -> None:
-        self._rows([(columns.reshape(-1, 1), 1.0)], lower=value, upper=value)
+        self.milp.add_sums([(columns.reshape(-1, 1), 1.0)], lower=value, upper=value)
 
     def _start(self) -> None:
         standing = np.zeros(self.at.shape[:3], dtype=bool)
@@ -155,23 +133,23 @@ class _Builder:
         cells = self.enter.size
         now, before = self.at[..., 1:].reshape(cells, 1), self.at[..., :-1].reshape(cells, 1)
         enter, leave, fall = (a.reshape(cells, 1) for a in (self.enter, self.leave, self.fall))
-        self._rows([(now, 1), (before, -1), (enter, -1), (leave, 1), (fall, 1)], lower=0, upper=0)
+        self.milp.add_sums([(now, 1), (before, -1), (enter, -1), (leave, 1), (fall, 1)], lower=0, upper=0)
         n, layers = len(self.blocks), self.horizon
         by_block = [np.moveaxis(a, 3, 1).reshape(n * layers, -1) for a in (self.enter, self.leave, self.fall)]
         take = self.take.reshape(n * layers, 1)
-        self._rows([(by_block[0], 1), (by_block[1], -1), (take, -1)], lower=0, upper=0)
+        self.milp.add_sums([(by_block[0], 1), (by_block[1], -1), (take, -1)], lower=0, upper=0)
         if (self.lies >= 0).all():
             now, before = self.lies[:, 1:].reshape(-1, 1), self.lies[:, :-1].reshape(-1, 1)
-            self._rows([(now, 1), (before, -1), (by_block[2], -1), (take, 1)], lower=0, upper=0)
+            self.milp.add_sums([(now, 1), (before, -1), (by_block[2], -1), (take, 1)], lower=0, upper=0)
 
     def _gravity(self) -> None:
         """At most one block a place, and one only where the place below holds one."""
         places = np.moveaxis(self.at, 0, 3)  # l, h, t, b
         n = len(self.blocks)
-        self._rows([(places.reshape(-1, n), 1)], upper=1)
+        self.milp.add_sums([(places.reshape(-1, n), 1)], upper=1)
         upper, under = places[:, 1:].reshape(-1, n), places[:, :-1].reshape(-1, n)
         if len(upper):
-            self._rows([(upper, 1), (under, -1)], upper=0)
+            self.milp.add_sums([(upper, 1), (under, -1)], upper=0)
 
     def _topples(self) -> None:
         toppled = len(self.instance.stacks) if self.options.topple else 0
@@ -180,21 +158,21 @@ class _Builder:
             for height in range(n):
                 falls = np.moveaxis(self.fall[:, place, height], 0, 1)  # t, b
                 cuts = np.moveaxis(self.topple[place, : height + 1], 0, 1)  # t, cuts
-                self._rows([(falls, 1), (cuts, -1)], upper=0)
+                self.milp.add_sums([(falls, 1), (cuts, -1)], upper=0)
                 after = np.moveaxis(self.at[:, place, height, 1:], 0, 1)
-                self._rows([(after, 1), (self.topple[place, height][:, None], 1)], upper=1)
+                self.milp.add_sums([(after, 1), (self.topple[place, height][:, None], 1)], upper=1)
             cap = self.options.max_topple
             if cap is not None:
                 falls = np.moveaxis(self.fall[:, place], 2, 0)
                 cuts = np.moveaxis(self.topple[place], 1, 0)
-                self._rows([(falls, 1), (cuts, -cap)], upper=0)
+                self.milp.add_sums([(falls, 1), (cuts, -cap)], upper=0)
 
     def _one_action_a_stack(self) -> None:
         enter, leave = (np.moveaxis(a, (1, 3), (0, 1)) for a in (self.enter, self.leave))
         places, layers = enter.shape[:2]
         rows = places * layers
         cuts = np.moveaxis(self.topple, 2, 1).reshape(rows, -1)
-        self._rows([(enter.reshape(rows, -1), 1), (leave.reshape(rows, -1), 1), (cuts, 1)], upper=1)
+        self.milp.add_sums([(enter.reshape(rows, -1), 1), (leave.reshape(rows, -1), 1), (cuts, 1)], upper=1)
 
     def _goal(self) -> None:
         last = self.at[..., -1]
@@ -202,10 +180,10 @@ class _Builder:
         if isinstance(goal, OnGoal):
             for upper, under in goal.on.items():
                 a, b = last[self.number[upper]], last[self.number[under]]
-                self._rows([(a[:, 1:].reshape(1, -1), 1)], lower=1)
-                self._rows([(a[:, 1:].reshape(-1, 1), 1), (b[:, :-1].reshape(-1, 1), -1)], upper=0)
+                self.milp.add_sums([(a[:, 1:].reshape(1, -1), 1)], lower=1)
+                self.milp.add_sums([(a[:, 1:].reshape(-1, 1), 1), (b[:, :-1].reshape(-1, 1), -1)], upper=0)
             for block in goal.bottom:
-                self._rows([(last[self.number[block], :, :1].reshape(1, -1), 1)], lower=1)
+                self.milp.add_sums([(last[self.number[block], :, :1].reshape(1, -1), 1)], lower=1)
             return
         for place, location in enumerate(self.instance.locations):
             for height, block in enumerate(self.demands.build.get(location, ())):
@@ -218,12 +196,14 @@ class _Builder:
         most = len(self.instance.locations)
         if self.horizon > 1:
             later, sooner = slice(1, None), slice(None, -1)
-            self._rows([(enter[later], 1), (cuts[later], 1), (enter[sooner], -most), (cuts[sooner], -most)], upper=0)
+            self.milp.add_sums(
+                [(enter[later], 1), (cuts[later], 1), (enter[sooner], -most), (cuts[sooner], -most)], upper=0
+            )
 
     def _cost(self, lower_bound: int, upper_bound: int | None) -> None:
         upper = np.inf if upper_bound is None else upper_bound - 1
         enter, cuts = self.enter.reshape(1, -1), self.topple.reshape(1, -1)
-        self._rows([(enter, TRANSFER_COST), (cuts, TOPPLE_COST)], lower=lower_bound, upper=upper)
+        self.milp.add_sums([(enter, TRANSFER_COST), (cuts, TOPPLE_COST)], lower=lower_bound, upper=upper)
 
 
 def read_positions(instance: Instance, model: PositionsModel, vector: Floats) -> tuple[Action, ...] | None:

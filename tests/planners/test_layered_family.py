@@ -1,0 +1,162 @@
+"""The layered model of the family: with carriers, lifts and costs its proofs are uniform-cost search's."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from smash.planners.layered import LayeredPlanner
+from smash.planners.protocol import SolveOptions, why_unsupported
+from smash.problem import (
+    TABLE,
+    Carrier,
+    Carry,
+    Costs,
+    Instance,
+    Law,
+    Lift,
+    OnGoal,
+    PlanOptions,
+    PositionsGoal,
+    StacksGoal,
+    make_instance,
+)
+from smash.problem.files import read_instance
+from tests.cheapest import cheapest_plan
+from tests.strategies import arrangements, goals
+
+SCOOP = Path(__file__).parents[2] / "examples" / "scoop.json"
+ACTIONS = ("pick", "place", "topple", "carry", "lift")
+
+
+@st.composite
+def family_instances(draw, max_blocks=3) -> Instance:
+    """Draw a small instance with carriers, lifts and costs, or with some of them."""
+    blocks = [f"b{number}" for number in range(draw(st.integers(1, max_blocks)))]
+    stacks = [f"s{number}" for number in range(draw(st.integers(1, 3)))]
+    buffers = ["u"] * draw(st.integers(0, 1))
+    start, loose = draw(arrangements(blocks, [*stacks, *buffers], leave_out=True))
+    stations = ("here", "there", "yonder")[: draw(st.integers(2, 3))]
+    carriers, table = [], loose
+    for number in range(draw(st.integers(0, len(stations) - 1))):
+        room = draw(st.integers(1, 2))
+        held, table = (table[:room], table[room:]) if draw(st.booleans()) else ([], table)
+        carriers.append(Carrier(f"tray {number}", stations, stations[number], room, tuple(held)))
+    points = [*stacks, *buffers, TABLE, *(stations if carriers else ())]
+    actions = draw(st.fixed_dictionaries({name: st.integers(1, 8) for name in ACTIONS}))
+    positions = {point: draw(st.tuples(st.integers(0, 9), st.integers(0, 9))) for point in points}
+    costs = st.sampled_from([Costs(), Costs(actions), Costs(actions, 1.3, positions), Costs({}, 3.0, positions)])
+    return make_instance(
+        name="drawn",
+        blocks=blocks,
+        stacks=stacks,
+        buffers=buffers,
+        start=start,
+        table=table,
+        goal=draw(goals(blocks, stacks)),
+        carriers=carriers,
+        capacities=draw(st.sampled_from([{}, {"lift": 1}, {"lift": 2}])),
+        costs=draw(costs),
+    )
+
+
+def family_options() -> st.SearchStrategy[PlanOptions]:
+    """Draw plan options of the family."""
+    without = st.sampled_from([(), (), ("carry",), ("lift",)])
+    return st.builds(PlanOptions, st.booleans(), st.sampled_from([None, None, 1, 2]), without=without)
+
+
+def solve(instance, options, budget=20.0, **more):
+    settings = SolveOptions(options.topple, options.max_topple, without=options.without, **more)
+    return LayeredPlanner().solve(instance, settings, budget)
+
+
+def judge(instance, options, result):
+    """Hold a result to uniform-cost search."""
+    found = cheapest_plan(instance, options)
+    if result.actions is not None:
+        assert Law(instance, options).check(result.actions).cost == result.cost
+        assert result.cost >= found[0]
+    if result.status == "optimal":
+        assert result.cost == found[0]
+    if result.status == "infeasible":
+        assert found is None
+    elif found is not None and result.lower_bound is not None:
+        assert result.lower_bound <= found[0]
+
+
+@settings(max_examples=25, deadline=None)
+@given(family_instances(max_blocks=2), family_options())
+def test_what_is_proven_is_true(instance, options):
+    judge(instance, options, solve(instance, options, budget=1.0))
+
+
+@pytest.mark.slow
+@settings(max_examples=300, deadline=None)
+@given(family_instances(max_blocks=4), family_options())
+def test_what_is_proven_is_true_for_many(instance, options):
+    judge(instance, options, solve(instance, options, budget=3.0))
+
+
+SMALL = make_instance(
+    name="small",
+    blocks=["a", "b", "c"],
+    stacks=["s", "g"],
+    start={"s": ["a", "b", "c"]},
+    goal=PositionsGoal({"b": ("g", 1), "c": ("g", 2)}),
+    capacities={"lift": 2},
+)
+
+
+def test_a_lift_moves_a_tower_at_once():
+    result = solve(SMALL, PlanOptions())
+    assert (result.status, result.actions) == ("optimal", (Lift("s", 2, "g"),))
+
+
+@pytest.mark.parametrize(
+    "goal", [StacksGoal({"g": ("c", "b", "a")}), OnGoal({"a": "b", "b": "c"}), PositionsGoal({"a": ("g", 1)})]
+)
+@pytest.mark.parametrize("topple", [True, False])
+def test_every_kind_of_goal_is_solved_to_its_optimum(goal, topple):
+    instance, options = replace(SMALL, goal=goal, buffers=("u",), start=SMALL.start | {"u": ()}), PlanOptions(topple)
+    result = solve(instance, options)
+    assert (result.status, result.cost) == ("optimal", cheapest_plan(instance, options)[0])
+
+
+@pytest.mark.parametrize(
+    ("topple", "without", "carries"),
+    [
+        (False, ("carry", "lift"), False),
+        (True, ("carry", "lift"), False),
+        (False, ("lift",), True),
+        (True, ("lift",), True),
+    ],
+)
+def test_the_scoop_demonstration_is_solved_to_its_optimum(topple, without, carries):
+    result = solve(read_instance(SCOOP), PlanOptions(topple, without=without), budget=60.0)
+    assert result.status == "optimal"
+    assert any(isinstance(action, Carry) for action in result.actions) == carries
+
+
+def test_where_no_block_can_reach_its_goal_the_flow_proves_it():
+    instance = make_instance(
+        name="stuck",
+        blocks=["a", "b"],
+        stacks=["s"],
+        start={"s": ["a", "b"]},
+        goal=StacksGoal({"s": ("b", "a")}),
+        capacities={"lift": 2},
+    )
+    result = solve(instance, PlanOptions(topple=False))
+    assert (result.status, result.bound_origin) == ("infeasible", "layered flow without order")
+
+
+def test_a_horizon_that_is_too_short_proves_nothing():
+    result = solve(read_instance(SCOOP), PlanOptions(), horizon=1)
+    assert result.status == "unknown"
+
+
+def test_it_takes_the_whole_family():
+    assert why_unsupported(LayeredPlanner(), read_instance(SCOOP), SolveOptions()) is None
