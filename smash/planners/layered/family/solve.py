@@ -27,8 +27,8 @@ BUILD_SHARE = 0.6
 """Share of the time left that the building of a model may take."""
 FLOW_SHARE = 0.2
 """Share of the time left that a program without order may take."""
-SOLVER = {"presolve": "off"}
-"""The solver's probing of these models takes most of its time, keeps to no limit, and helps little."""
+UNPROBED = {"presolve": "off"}
+"""For the relaxation: the solver's presolve takes most of its time, keeps to no limit, and saves no search."""
 BOUND_ORIGIN = "layered flow without order"
 
 
@@ -190,7 +190,7 @@ class FamilySolve:
         def decode(model: RelaxedModel, vector: Floats) -> Sequence[Action] | None:
             return RelaxedReader(self.instance, self.options, model, vector).actions()
 
-        return self._stage(horizon, "relaxation", build_relaxed, decode)
+        return self._stage(horizon, "relaxation", build_relaxed, decode, UNPROBED)
 
     def _positions_stage(self, horizon: int) -> MilpResult | None:
         from smash.planners.layered.family.decode import read_family
@@ -207,6 +207,7 @@ class FamilySolve:
         name: str,
         build: Callable[..., Model],
         decode: Callable[[Model, Floats], Sequence[Action] | None],
+        solver: dict[str, str] | None = None,
     ) -> MilpResult | None:
         """Build and solve a model whose every plan is cheaper than the best one; None where building took too long."""
         from smash.planners import highs
@@ -231,7 +232,7 @@ class FamilySolve:
             time_limit=self.deadline - perf_counter(),
             threads=self.options.threads,
             seed=self.options.seed,
-            options=SOLVER,
+            options=solver,
             on_solution=lambda _seconds, _objective, vector: found(vector),
             should_stop=self._done,
         )
