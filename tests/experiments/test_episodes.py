@@ -114,8 +114,7 @@ def alive(mark):
 
 @pytest.mark.slow
 @pytest.mark.timeout(900)
-@pytest.mark.parametrize("kills", [10])
-def test_killed_at_random_moments_no_episode_is_lost_or_repeated(results, tmp_path, monkeypatch, kills):
+def test_killed_at_random_moments_no_episode_is_lost_or_repeated(results, tmp_path, monkeypatch):
     monkeypatch.setenv("MARKED", str(tmp_path))
     disturbed, undisturbed = tmp_path / "disturbed", tmp_path / "undisturbed"
     for folder in (disturbed, undisturbed):
@@ -123,7 +122,7 @@ def test_killed_at_random_moments_no_episode_is_lost_or_repeated(results, tmp_pa
         shutil.copyfile(results / "runs.jsonl", folder / "runs.jsonl")
     more = ("--policy", "open", "--policy", "replan", "--seeds", "6", "--jobs", "2")
     seen, chance = [], random.Random(8)
-    for _ in range(kills):
+    for _ in range(10):
         command = [sys.executable, "-m", "smash", "episodes", str(disturbed), *more]
         running = subprocess.Popen(command, stderr=subprocess.DEVNULL)
         time.sleep(chance.uniform(1.0, 12.0))
