@@ -2,7 +2,7 @@
 
 `OUT/records/STEP.json` says how far a step is. A step that is done and whose inputs have not changed since is not run
 again; one that was stopped or killed is continued by the resume of its own commands; one whose inputs have changed is
-begun from nothing, and what it had made before is set aside in `OUT/stale`.
+begun from nothing, and what it had made before is set aside in `OUT/.stale`.
 """
 
 from __future__ import annotations
@@ -29,6 +29,9 @@ HEARTBEAT = 10.0
 """Seconds between two notes of how long a step has run, so that a kill loses no more of its time."""
 PATIENCE = 60.0
 """Seconds that a command has to end by itself once it is asked to."""
+
+STALE = ".stale"
+"""Hidden, so that whoever reads all records below the directory passes it by."""
 
 State = Literal["begun", "failed", "done"]
 Plan = Literal["done", "kept", "to do", "continued", "stale", "not run"]
@@ -223,7 +226,7 @@ class Reproduction:
         if not parts:
             return
         number = 1
-        while (aside := self.out / "stale" / f"{step.name}-{number}").exists():
+        while (aside := self.out / STALE / f"{step.name}-{number}").exists():
             number += 1
         aside.mkdir(parents=True)
         for part in parts:
@@ -260,7 +263,7 @@ def _run_command(
         start_new_session=True,
         preexec_fn=partial(end_with_parent, os.getpid()),
     )
-    counted = noted = begun = monotonic()
+    counted = noted = monotonic()
     asked: float | None = None
     while True:
         try:
@@ -280,7 +283,7 @@ def _run_command(
             asked = now
         if asked is not None and now - asked > PATIENCE:
             process.kill()
-        display.running(now - begun)
+        display.running(record.seconds)
 
 
 def last_line(log: Path) -> str:

@@ -145,7 +145,7 @@ def _check(steps: Steps, where: str) -> None:
         before.append(step.name)
 
 
-RESERVED = ("logs", "records", "stale", "manifest.json", "MANIFEST.md")
+RESERVED = ("logs", "records", "manifest.json", "MANIFEST.md")
 """Names in the directory of a reproduction that are not a step's."""
 
 

@@ -14,6 +14,7 @@ import pytest
 from click.testing import CliRunner
 
 from smash.cli import smash
+from smash.experiments.reproduce import STALE
 from smash.experiments.steps import file_hash, read_steps
 from smash.problem import MalformedFile
 
@@ -116,7 +117,7 @@ def test_a_changed_input_makes_its_step_and_those_after_it_anew(steps, tmp_path)
     assert "was kept, although its commands have changed" in (out / "MANIFEST.md").read_text()
     assert reproduce(file, out).returncode == 0
     assert (out / "one" / "starts").read_text() == "a c "
-    assert (out / "stale" / "one-1" / "one" / "starts").read_text() == "a "
+    assert (out / STALE / "one-1" / "one" / "starts").read_text() == "a "
     assert "nothing to do" in reproduce(file, out).stdout
 
 
@@ -188,7 +189,7 @@ def test_a_step_after_several_uses_those_that_there_are(steps, tmp_path):
     assert (tmp_path / "out" / "after" / "c").exists()
     steps(step("bad", "a"), step("good", "b"), step("after", "c", 'after = ["bad", "good"]'))
     assert reproduce(file, tmp_path / "out").returncode == 0
-    assert (tmp_path / "out" / "stale" / "after-1").exists()
+    assert (tmp_path / "out" / STALE / "after-1").exists()
     assert "nothing to do" in reproduce(file, tmp_path / "out").stdout
 
 
