@@ -64,16 +64,18 @@ TALL_CUT = Manner(0.8, 1.1)
 """More fall: a quick, short push leaves the rest of the pile where it is, a long one drags it along."""
 
 
-MOST_SWEPT = 7
+MOST_SWEPT = 6
 """More blocks than this are not swept off the table at once, ..."""
-MOST_CUT = 5
+MOST_CUT = 4
 """... and no more than this off a standing rest: the upper ones would fall out of reach. They go in several pushes."""
 
 
 def first_cut(height: int, top: int) -> int:
     """The lowest level that the next push takes along, of a pile of `top` blocks that shall be cut at `height`."""
     falling = top - height + 1
-    pushes = ceil(falling / (MOST_SWEPT if height == 1 else MOST_CUT))
+    if falling <= (MOST_SWEPT if height == 1 else MOST_CUT):
+        return height
+    pushes = ceil(falling / MOST_CUT)
     return top - ceil(falling / pushes) + 1
 
 
