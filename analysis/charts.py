@@ -14,8 +14,6 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 DASHES = ("-", "--", "-.", ":")
 """Okabe and Ito's colours for every kind of colour vision; line styles tell curves apart in grey."""
 GRID_COLOUR = "#dddddd"
-PANEL_SIZE = (3.3, 2.4)
-"""Width and height of a panel that stands alone [in]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,12 +54,14 @@ class Chart:
         rows: Panels, row by row, all rows of equal length.
         across: What runs to the right, with its unit; `upward` likewise.
         legend: The curves that may occur.
+        panel_size: Width and height of a panel that stands alone [in].
     """
 
     rows: list[list[Panel]]
     across: str
     upward: str
     legend: list[Curve]
+    panel_size: tuple[float, float] = (3.3, 2.4)
 
     def figure(self) -> Figure:
         """Draw all panels and one legend."""
@@ -80,9 +80,9 @@ class Chart:
 
     def panel_figure(self, panel: Panel) -> Figure:
         """Draw one panel alone, with its own axis titles and without a legend."""
-        figure = _blank(*PANEL_SIZE, layout=None)
+        figure = _blank(*self.panel_size, layout=None)
         axis = figure.subplots()
-        figure.subplots_adjust(left=0.17, right=0.97, top=0.97, bottom=0.19)
+        figure.subplots_adjust(left=0.17, right=0.97, top=0.97, bottom=0.45 / self.panel_size[1])
         _draw(axis, replace(panel, title=""))
         axis.set_xlabel(self.across)
         axis.set_ylabel(self.upward)

@@ -105,7 +105,9 @@ def _cell(group: pd.DataFrame, metric: Metric) -> str:
         low, high = wilson(int(group["success"].sum()), len(group))
         return f"{group['success'].mean():.2f} [{low:.2f}, {high:.2f}] of {len(group)}"
     values = group if metric.column in ("depth", "first_plan_seconds") else group[group["success"]]
-    each = values.groupby("instance")[metric.column].mean()
+    each = values.groupby("instance")[metric.column].mean().dropna()
+    if each.empty:
+        return "–"
     return f"{mean_std(each, metric.digits)} ({each.median():.{metric.digits}f})"
 
 

@@ -45,6 +45,7 @@ class TableBlock:
         note: What is counted, over which subset.
         emphasis: Rows to stand out, by their number (the paper's).
         folded: Whether a reader opens it first.
+        grouped: Whether rows with the same first cell are one group, which says it once.
         pictures: Column -> small inline SVG beside the text of each row, on the page alone.
         entries: Per row the runs behind it (numbers of the section's store), empty where a row has none to show.
         store: Name of that store.
@@ -56,10 +57,21 @@ class TableBlock:
     note: str = ""
     emphasis: frozenset[int] = frozenset()
     folded: bool = False
+    grouped: bool = False
     pictures: dict[str, list[str]] = field(default_factory=dict)
     entries: list[list[int]] = field(default_factory=list)
     store: str = ""
     kind: Literal["table"] = "table"
+
+    def spans(self) -> list[int]:
+        """Return per row how many rows its first cell stands for; 0 where a cell above does."""
+        spans = [1] * len(self.frame)
+        if self.grouped:
+            first = self.frame.iloc[:, 0].tolist()
+            for row in range(len(first) - 1, 0, -1):
+                if first[row] == first[row - 1]:
+                    spans[row - 1], spans[row] = spans[row] + 1, 0
+        return spans
 
 
 @dataclass(slots=True)

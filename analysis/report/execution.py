@@ -25,13 +25,13 @@ from analysis.tables import share
 
 def execution_blocks(records: list[Record]) -> list[Block]:
     """Return success as grids, the paper's tables with ours, execution time saved, and the failures."""
-    episodes = episode_table(records)
+    episodes = _by_scene(episode_table(records))
     blocks: list[Block] = [_success(episodes)]
     for benchmark, title in BENCHMARKS.items():
         if (episodes["benchmark"] == benchmark).any():
             table = metric_table(episodes, benchmark)
             papers = frozenset(i for i, source in enumerate(table["source"]) if source == "paper")
-            blocks.append(TableBlock(f"table-{benchmark}", title, table, LEGEND, emphasis=papers))
+            blocks.append(TableBlock(f"table-{benchmark}", title, table, LEGEND, emphasis=papers, grouped=True))
     saved = paired_table(episodes)
     if len(saved):
         note = (
@@ -50,6 +50,12 @@ def execution_blocks(records: list[Record]) -> list[Block]:
     return blocks
 
 
+def _by_scene(episodes: pd.DataFrame) -> pd.DataFrame:
+    """Return the episodes with their scene beside the policy where there are several: no figure is over two scenes."""
+    scenes = episodes["scene"].fillna("default") if "scene" in episodes else pd.Series("default", index=episodes.index)
+    return episodes.assign(policy=episodes["policy"] + ", " + scenes) if scenes.nunique() > 1 else episodes
+
+
 def _failed(episodes: pd.DataFrame, row: dict[Hashable, object]) -> list[int]:
     """Return the places of the failed episodes that a row of `failure_table` counts."""
     columns = ["suite", "label", "variant", "policy", "failure"]
@@ -63,14 +69,18 @@ def _failed(episodes: pd.DataFrame, row: dict[Hashable, object]) -> list[int]:
 
 def execution_headlines(records: list[Record]) -> list[str]:
     """Return success rates by policy and variant, and the time that topple saves, a sentence each."""
-    episodes = episode_table(records)
+    episodes = _by_scene(episode_table(records))
     lines = []
     for (benchmark, policy), part in episodes.groupby(["benchmark", "policy"]):
+        who = f"{str(benchmark).capitalize()}-goal episodes, policy “{policy}”"
+        if part["success"].all():
+            lines.append(f"{who}: all {len(part)} succeed, in every variant ({share(len(part), len(part))}).")
+            continue
         said = [
             f"{share(int(mine['success'].sum()), len(mine))} {variant_words(str(variant))} ({len(mine)} episodes)"
             for variant, mine in part.groupby("variant")
         ]
-        lines.append(f"{str(benchmark).capitalize()}-goal episodes, policy “{policy}”, success: {', '.join(said)}.")
+        lines.append(f"{who}, success: {', '.join(said)}.")
     failures = episodes[~episodes["success"]]["failure"].value_counts()
     if len(failures):
         counted = ", ".join(f"{name} {count}" for name, count in failures.items())
@@ -92,7 +102,7 @@ def _success(episodes: pd.DataFrame) -> GridBlock:
         grids.append(
             Grid(
                 f"Success, {benchmark}-goal",
-                "blocks and variant",
+                "blocks, variant",
                 "planner, policy",
                 [f"{blocks} {VARIANTS.get(variant, variant)}" for blocks, variant in columns],
                 [f"{label}, {policy}" for label, policy in rows],

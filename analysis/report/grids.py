@@ -9,7 +9,7 @@ from typing import Any
 import pandas as pd
 
 from analysis.cells import matched_cells, variant_cells
-from analysis.findings import planner_findings
+from analysis.findings import planner_findings, smallest_buffers
 from analysis.heatmaps import ACTION_COLOURS, GAIN_COLOURS, RATIO_COLOURS, SUCCESS_COLOURS, ink, planner_figure
 from analysis.readings import readings
 from analysis.records import runs_table
@@ -20,6 +20,8 @@ from analysis.statistics import wilson
 from analysis.tables import ablation_table
 
 VARIANT_WORDS = {"no-topple": "without topple", "topple": "with topple"}
+
+CAPPED = "max-topple-"
 
 
 class Shades:
@@ -39,6 +41,8 @@ class Shades:
 
 def variant_words(variant: str) -> str:
     """Return what a variant is called in a title."""
+    if variant.startswith(CAPPED):
+        return f"with topples of at most {variant.removeprefix(CAPPED)}"
     return VARIANT_WORDS.get(variant, variant)
 
 
@@ -67,9 +71,23 @@ def ablation_grids(records: list[Record]) -> list[GridBlock]:
                 picture=partial(planner_figure, str(label), str(suite), mine, pairs),
                 fold=True,
                 opened=not blocks,
+                summary=_summary(mine, pairs),
             )
         )
     return blocks
+
+
+def _summary(cells: pd.DataFrame, pairs: pd.DataFrame) -> str:
+    """Return the figures of a folded heatmap: B90 at the largest budget per variant, and the middle ratio."""
+    said = []
+    for variant in ("no-topple", "topple"):
+        mine = cells[cells["variant"] == variant]
+        if len(mine):
+            fewest = smallest_buffers(mine, every_budget=False)
+            said.append(f"{'none' if fewest is None else fewest} {variant_words(variant)}")
+    words = f"B90 at {cells['budget'].max():g} s: {', '.join(said)}"
+    ratios = pairs["ratio_common"].dropna()
+    return words + (f"; without / with topple: {ratios.median():.2f} (median)" if len(ratios) else "")
 
 
 class _Ablation:

@@ -108,4 +108,4 @@ def _chart(trials: list[Record], groups: dict[tuple[int, int], list[int]], cuts:
         return Panel(f"cut at {cut}, {size} falling: {good}/{len(numbers)}", partial(draw, numbers=numbers), words)
 
     rows = [[panel(cut, size) for size in sizes] for cut in cuts]
-    return Chart(rows, "along the push [cm]", "aside [cm]", [GRASPABLE, LOST])
+    return Chart(rows, "along the push [cm]", "aside [cm]", [GRASPABLE, LOST], panel_size=(3.3, 1.75))

@@ -86,23 +86,23 @@ class Planning:
         return scaling_cells([record for record in self.records if record["kind"] != "cutoff"])
 
     def _thresholds(self) -> list[str]:
-        """Say the fewest buffers that reach the paper's success rate, where several were tried."""
-        read = readings(self.records)
-        lines = []
-        for (label, suite), part in variant_cells(read).groupby(["label", "suite"], sort=False):
-            if part["buffers"].nunique() < 3 or part["variant"].nunique() < 2:
+        """Say the fewest buffers that reach the paper's success rate, where several were tried on few sets."""
+        needs: dict[tuple[str, ...], list[str]] = {}
+        for (label, suite), part in variant_cells(readings(self.records)).groupby(["label", "suite"], sort=False):
+            if part["buffers"].nunique() < 3 or part["variant"].nunique() < 2 or self.sizes >= SIZES_FOR_CURVES:
                 continue
             said = []
             for variant, mine in part.groupby("variant"):
                 fewest = smallest_buffers(mine, every_budget=False)
-                said.append(f"{'none of those tried' if fewest is None else fewest} {variant_words(str(variant))}")
-            lines.append(f"{label} on {suite} needs {' and '.join(said)}")
-        if not lines:
+                said.append(f"{'more than tried' if fewest is None else fewest} {variant_words(str(variant))}")
+            needs.setdefault(tuple(said), []).append(f"{label} on {suite}")
+        if not needs:
             return []
         budget = max(record["budget"] for record in self.records)
+        lines = [f"{' and '.join(said)}: {', '.join(who)}" for said, who in needs.items()]
         return [
             f"Fewest buffers with at least {THRESHOLD:.0%} success at the largest budget (up to {budget:g} s; the "
-            f"paper: 8 without topple, none with): " + "; ".join(lines) + "."
+            f"paper: 8 without topple, 0 with topple): {'; '.join(lines)}."
         ]
 
     def _provers(self) -> list[str]:
@@ -134,7 +134,7 @@ class Planning:
             )
         if self.sizes >= SIZES_FOR_CURVES:
             blocks += growth_blocks(self.cells())
-        if self.runs["suite"].nunique() <= SHOWN_SUITES:
+        if self.runs["suite"].nunique() <= SHOWN_SUITES and self.sizes < SIZES_FOR_CURVES:
             blocks += self._curves()
         blocks += self._effects()
         blocks.append(
@@ -246,7 +246,7 @@ def _effect_words(effect: Effect) -> str:
     where += f" with {about['buffers']} buffers" if "buffers" in about else ""
     low, high = pair.interval
     return (
-        f"Proven optima{where}: {pair.left_mean:.1f} actions without topple, {pair.right_mean:.1f} with "
-        f"{variant_words(about['variant']).removeprefix('with ')} on the {pair.units} instances where both are proven; "
+        f"Proven optima{where}: {pair.left_mean:.1f} actions without topple, {pair.right_mean:.1f} "
+        f"{variant_words(about['variant'])} on the {pair.units} instances where both are proven; "
         f"{pair.mean:.1f} saved [{low:.1f}, {high:.1f}], ratio {pair.ratio:.2f}."
     )

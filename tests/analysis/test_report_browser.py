@@ -64,7 +64,11 @@ def test_the_theme_follows_the_system_until_it_is_chosen(browser, report):
     browser.run("localStorage.clear()")
 
 
-def test_it_prints_whole(browser, report, tmp_path):
-    browser.open(report)
+def test_it_prints_whole_and_on_white_even_where_the_system_is_dark(browser, report, tmp_path):
+    browser.open(report, dark=True)
+    dark = [{"name": "prefers-color-scheme", "value": "dark"}]
+    browser.call("Emulation.setEmulatedMedia", media="print", features=dark)
+    assert browser.run("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+    browser.call("Emulation.setEmulatedMedia", media="")
     browser.paper(tmp_path / "report.pdf")
     assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
