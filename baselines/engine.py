@@ -12,7 +12,7 @@ from time import monotonic
 from typing import Any, ClassVar, Self
 
 from baselines.encodings import FAMILY, UnknownEncoding, encoding_names, get_encoding, unsupported_reason
-from baselines.facts import trim_buffers
+from baselines.facts import named_blocks, trim_buffers
 from baselines.family.parts import TOLD
 from baselines.names import Step
 from baselines.outcomes import Outcome
@@ -121,7 +121,8 @@ class EnginePlanner(BasePlanner):
             log.offer((), "start")
             log.prove(0, "start")
             return log.result()
-        task = compile_instance(trim_buffers(instance), options, self.encoding_of(instance, options))
+        encoding, picked = self.encoding_of(instance, options), named_blocks(instance)
+        task = compile_instance(trim_buffers(instance), options, encoding, picked)
         with tempfile.TemporaryDirectory(prefix="smash-", ignore_cleanup_errors=True) as folder:
             run = Run(task, log, self.name, Path(folder), deadline, self.memory)
             run.details["encoding"] = task.encoding.name

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -57,10 +57,39 @@ def _alike(instance: Instance) -> list[list[str]]:
     return list(groups.values())
 
 
-def facts_of(instance: Instance, options: PlanOptions, encoding: Encoding, names: Names) -> Facts:
-    """Return the facts of an instance in one encoding."""
+def named_blocks(instance: Instance) -> frozenset[str]:
+    """Return the blocks that the goal names: no cheapest plan picks another one from the table region.
+
+    Leave such a pick and what follows for this block out: every pile that it stood in is one lower, everything else
+    is as before, and at the end nothing rests on it that the goal wants at a height or on something else. This holds
+    for actions that blocks only hinder (`Part.blocks_only_hinder`).
+    """
+    match instance.goal:
+        case StacksGoal():
+            return frozenset(instance.blocks)
+        case PositionsGoal(positions):
+            return frozenset(positions)
+        case OnGoal(on, bottom):
+            return frozenset((*on, *on.values(), *bottom))
+
+
+def facts_of(
+    instance: Instance, options: PlanOptions, encoding: Encoding, names: Names, wanted: Collection[str] | None = None
+) -> Facts:
+    """Return the facts of an instance in one encoding.
+
+    Args:
+        instance: the problem.
+        options: what a plan may use.
+        encoding: the domain.
+        names: how its objects are called.
+        wanted: the blocks that may be picked from the table region, in the family's domains; all, where None or
+            where an action of the domain may need the others.
+    """
     if encoding.parts:
-        return _family_facts(Telling(instance, options, Layout(instance, names)), encoding)
+        if wanted is None or not all(part.blocks_only_hinder for part in encoding.parts):
+            wanted = instance.blocks
+        return _family_facts(Telling(instance, options, Layout(instance, names), wanted), encoding)
     cap = cap_of(instance, options) if encoding.capped else None
     counts = count_names(max(len(instance.buffers), 0 if cap is None else cap - 1))
     start: list[Fact] = [("hand-empty",)]

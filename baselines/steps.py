@@ -139,7 +139,7 @@ def steps_of(actions: Sequence[Action], task: PddlTask) -> list[Step]:
 
 
 def _telling(task: PddlTask) -> Telling:
-    return Telling(task.instance, task.options, Layout(task.instance, task.names))
+    return Telling(task.instance, task.options, Layout(task.instance, task.names), task.instance.blocks)
 
 
 def _family_steps(task: PddlTask, state: State, action: Action) -> Iterator[Step]:

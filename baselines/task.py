@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -60,8 +60,16 @@ class PddlTask:
         return domain, problem
 
 
-def compile_instance(instance: Instance, options: PlanOptions, wanted: str) -> PddlTask:
+def compile_instance(
+    instance: Instance, options: PlanOptions, wanted: str, picked: Collection[str] | None = None
+) -> PddlTask:
     """Compile an instance; topples are told in the way `wanted` (`conditional`, `chain`, …).
+
+    Args:
+        instance: the problem.
+        options: what a plan may use.
+        wanted: the encoding's name.
+        picked: the blocks that may be picked from the table region, in the family's domains; all, where None.
 
     Raises:
         UnknownEncoding: where no encoding is called so.
@@ -69,7 +77,7 @@ def compile_instance(instance: Instance, options: PlanOptions, wanted: str) -> P
     """
     encoding = encoding_for(instance, options, wanted)
     names = Names.of(instance)
-    return PddlTask(instance, options, encoding, names, facts_of(instance, options, encoding, names))
+    return PddlTask(instance, options, encoding, names, facts_of(instance, options, encoding, names, picked))
 
 
 def _fact_lines(facts: Iterable[Fact]) -> str:

@@ -26,6 +26,7 @@
     (in ?l - location ?r - region)    ; where stack location ?l is
     (stands ?r - region ?p - spot)    ; where region ?r is
     (table-at ?p - spot)              ; where the table region is
+    (wanted ?b - block)               ; ?b may be picked from the table region (all, or those that the goal names)
     (next ?k ?more - count)           ; ?more = ?k + 1
     (hand-empty)
     (idle)                            ; no action that is told in several steps is under way
@@ -72,7 +73,7 @@
 
   (:action pick-from-table
     :parameters (?b - block ?p - spot)
-    :precondition (and (hand-empty) (idle) (on-table ?b) (table-at ?p))
+    :precondition (and (hand-empty) (idle) (on-table ?b) (wanted ?b) (table-at ?p))
     :effect (and (holding ?b ?p) (not (hand-empty)) (not (on-table ?b))
                  (increase (total-cost) (pick-cost))))
 

@@ -14,6 +14,7 @@ class CarryPart(Part):
     """`carry`, and the picks and places that load and unload."""
 
     kind = "carry"
+    blocks_only_hinder = True
 
     def needed(self, instance: Instance, options: PlanOptions) -> bool:
         """Return whether there is something to carry, or to pick from a carrier that stays where it is."""

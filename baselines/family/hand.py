@@ -14,6 +14,7 @@ class HandPart(Part):
     """Blocks one by one between piles, and out of the table region."""
 
     kind = "pick-and-place"
+    blocks_only_hinder = True
 
     def needed(self, instance: Instance, options: PlanOptions) -> bool:
         """Every domain has it."""
@@ -38,6 +39,7 @@ class HandPart(Part):
         for location in instance.locations:
             yield from _pile(telling, location)
         yield from (("on-table", telling.block(block)) for block in instance.table)
+        yield from (("wanted", telling.block(block)) for block in instance.blocks if block in telling.wanted)
         yield from (("in", short, layout.region(location)) for location, short in layout.names.locations.items())
         start = State.start_of(instance)
         for (is_stack, spot), region in layout.regions.items():

@@ -15,6 +15,7 @@ class LiftPart(Part):
     """`lift-begin`, `lift-down`, `lift-off`, `lift-onto`, `lift-end`."""
 
     kind = "lift"
+    blocks_only_hinder = True
 
     def start(self, telling: Telling) -> Iterator[Fact]:
         """Yield the capacity."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
@@ -21,11 +21,15 @@ PARTS = Path(__file__).resolve().parents[2] / "domains" / "parts"
 
 @dataclass(frozen=True, slots=True)
 class Telling:
-    """What a part tells of: an instance under plan options, and the PDDL names of what is in it."""
+    """What a part tells of: an instance under plan options, and the PDDL names of what is in it.
+
+    `wanted` are the blocks that may be picked from the table region.
+    """
 
     instance: Instance
     options: PlanOptions
     layout: Layout
+    wanted: Collection[str]
 
     def block(self, name: str) -> str:
         """Return the PDDL name of a block."""
@@ -57,9 +61,12 @@ class Part(ABC):
 
     Attributes:
         kind: the aggregating action's name in the law's family.
+        blocks_only_hinder: whether a legal action stays legal or becomes needless, at no higher cost, where a block
+            less is in the piles and on the carriers; then engines leave on the table what the goal does not name.
     """
 
     kind: ClassVar[str]
+    blocks_only_hinder: ClassVar[bool] = False
 
     def needed(self, instance: Instance, options: PlanOptions) -> bool:
         """Return whether the domain of this instance has the part."""

@@ -14,6 +14,7 @@ class TopplePart(Part):
     """`topple-begin`, `topple-drop`, `topple-end`; with a cap they count."""
 
     kind = "topple"
+    blocks_only_hinder = True
 
     def file(self, instance: Instance, options: PlanOptions) -> str:
         """Return the part that counts where a cap binds, else the plain one."""

@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from baselines.encodings import DOMAINS, family_encoding
-from baselines.facts import trim_buffers
+from baselines.facts import named_blocks, trim_buffers
 from baselines.family.parts import PARTS
 from baselines.planners import Aries, Enhsp, FdLama, FdLamaConditional, FdOpt, FdOptIpdb, SymkOpt
 from baselines.steps import actions_of, steps_of
@@ -22,6 +22,7 @@ from smash.problem import (
     Costs,
     Law,
     Lift,
+    OnGoal,
     PlanOptions,
     PositionsGoal,
     Topple,
@@ -149,6 +150,15 @@ def test_buffers_are_counted_where_no_way_tells_them_apart():
     task = compile_instance(trimmed, PlanOptions(), "chain")
     assert len(task.facts.objects["region"]) == 3
     assert [fact for fact in task.facts.start if fact[0] == "free"] == [("free", "r02", "n04"), ("free", "r03", "n04")]
+
+
+def test_engines_leave_what_the_goal_does_not_name_on_the_table_and_exports_do_not():
+    wanted = {("wanted", "b01"), ("wanted", "b03")}
+    every = compile_instance(scoop(), PlanOptions(), "chain").facts.start
+    named = compile_instance(scoop(), PlanOptions(), "chain", named_blocks(scoop())).facts.start
+    assert {fact for fact in named if fact[0] == "wanted"} == wanted
+    assert len([fact for fact in every if fact[0] == "wanted"]) == 4
+    assert named_blocks(scoop(goal=OnGoal({"a": "b"}, ("d",)))) == {"a", "b", "d"}
 
 
 def test_planners_say_what_they_take():
