@@ -2,31 +2,19 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator
-from importlib.metadata import entry_points
 from typing import Any
 
 from smash.problem.aggregating import AggregatingKind, allowed
 from smash.problem.carry import CarryKind
 from smash.problem.lift import LiftKind
 from smash.problem.model import Aggregating, Instance, PlanOptions
+from smash.problem.outside import added
 from smash.problem.topple import ToppleKind
 
 GROUP = "smash.aggregating"
 
-
-def _from_outside() -> Iterator[AggregatingKind[Any]]:
-    """Yield the kinds that other packages add; one that cannot be loaded is named and left out."""
-    for entry in entry_points(group=GROUP):
-        try:
-            yield entry.load()()
-        except Exception as error:  # another package's fault must not stop this one
-            print(f"smash: aggregating action {entry.name!r} cannot be loaded: {error}", file=sys.stderr)
-
-
 FAMILY: dict[str, AggregatingKind[Any]] = {
-    kind.name: kind for kind in (*_from_outside(), ToppleKind(), CarryKind(), LiftKind())
+    kind.name: kind for kind in (*added(GROUP), ToppleKind(), CarryKind(), LiftKind())
 }
 """Kinds of aggregating actions by name; the built-in ones cannot be replaced."""
 
