@@ -136,10 +136,43 @@ def paired_table(episodes: pd.DataFrame) -> pd.DataFrame:
                 "without [s]": f"{pair.left_mean:.1f}" if pair.units else "–",
                 "saved [s], mean [95 %]": f"{pair.mean:.1f} [{low:.1f}, {high:.1f}]" if pair.units else "–",
                 "saved [%]": f"{100 * (1 - 1 / pair.ratio):.0f}" if pair.ratio > 0 else "–",
-                "topple faster in": f"{pair.tally[0]}/{pair.units}",
+                "the paper [%]": _paper_saved(str(benchmark), int(str(blocks))),
+                "faster, equal, slower": ", ".join(map(str, pair.tally)),
             }
         )
     return pd.DataFrame(rows)
+
+
+def _paper_saved(benchmark: str, blocks: int) -> str:
+    """The share of the paper's mean execution time that topple saved there [%]."""
+    if benchmark not in PAPER or blocks not in SIZES:
+        return "–"
+    figures, column = PAPER[benchmark]["execution"], SIZES.index(blocks)
+    with_, without = (float(figures[variant][column].split()[0]) for variant in ("topple", WITHOUT))
+    return f"{100 * (1 - with_ / without):.0f}"
+
+
+def slower_table(episodes: pd.DataFrame) -> pd.DataFrame:
+    """Return the pairs in which topple took longer, worst first, with what each side planned and carried out."""
+    keys = ["label", "policy", "instance", "seed"]
+    columns = ["variant", *keys, "cost", "executed", "replans", "execution"]
+    done = episodes[episodes["success"]][columns]
+    sides = done[done["variant"] != WITHOUT].merge(
+        done[done["variant"] == WITHOUT].drop(columns="variant"), on=keys, suffixes=("", "_without")
+    )
+    sides["lost"] = sides["execution"] - sides["execution_without"]
+    worst = sides[sides["lost"] > 0].sort_values("lost", ascending=False)
+    return pd.DataFrame(
+        {
+            **{column: worst[column] for column in ("instance", "seed", "label", "variant", "policy")},
+            "lost [s]": worst["lost"].map("{:.1f}".format),
+            "with [s]": worst["execution"].map("{:.1f}".format),
+            "without [s]": worst["execution_without"].map("{:.1f}".format),
+            "planned with, without": [f"{a}, {b}" for a, b in zip(worst["cost"], worst["cost_without"], strict=True)],
+            "carried out": [f"{a}, {b}" for a, b in zip(worst["executed"], worst["executed_without"], strict=True)],
+            "replans": [f"{a}, {b}" for a, b in zip(worst["replans"], worst["replans_without"], strict=True)],
+        }
+    )
 
 
 def failure_table(episodes: pd.DataFrame) -> pd.DataFrame:
@@ -175,6 +208,8 @@ def make(results: Path, out: Path) -> list[Path]:
         files[-1].write_text(latex(table, title, f"tab:{benchmark}"), encoding="utf-8")
     paired, failed = paired_table(episodes), failure_table(episodes)
     parts += ["## Execution time saved by topple, paired by instance\n", markdown(paired)] if len(paired) else []
+    slower = slower_table(episodes)
+    parts += [f"## Where topple took longer: {len(slower)} pairs\n", markdown(slower)] if len(slower) else []
     parts += ["## Failures\n", markdown(failed) if len(failed) else "None.\n"]
     files[1].write_text("\n".join(parts), encoding="utf-8")
     return files

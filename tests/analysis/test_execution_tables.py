@@ -2,7 +2,7 @@ import json
 
 import pytest
 
-from analysis.execution_tables import failure_table, make, metric_table, paired_table, read_episodes
+from analysis.execution_tables import failure_table, make, metric_table, paired_table, read_episodes, slower_table
 from analysis.records import NoRecords
 
 
@@ -61,7 +61,8 @@ def test_savings_are_paired_over_instances_that_both_solved(results):
     (row,) = paired_table(read_episodes(results)).to_dict("records")
     assert row["instances"] == 2
     assert row["saved [s], mean [95 %]"].startswith("6.0")
-    assert row["topple faster in"] == "2/2"
+    assert row["faster, equal, slower"] == "2, 0, 0"
+    assert row["the paper [%]"] == "13"
 
 
 def test_failures_are_listed_with_an_example(results):
@@ -79,3 +80,10 @@ def test_tables_are_written_as_markdown_and_latex(results):
 def test_without_records_there_is_one_line(tmp_path):
     with pytest.raises(NoRecords, match="cannot be read"):
         read_episodes(tmp_path)
+
+
+def test_where_topple_took_longer_is_named_with_both_sides(tmp_path):
+    records = [record("a", "topple", 33.0), record("a", "no-topple", 30.0), record("b", "topple", 20.0)]
+    (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(r) + "\n" for r in records))
+    (row,) = slower_table(read_episodes(tmp_path)).to_dict("records")
+    assert (row["instance"], row["lost [s]"], row["planned with, without"]) == ("a", "3.0", "8, 8")
