@@ -10,7 +10,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
-from smash.problem.family import kinds_of
+from smash.problem.family import is_plain
 from smash.problem.model import Action, Instance
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ class LayeredPlanner(BasePlanner):
         on_incumbent: OnIncumbent | None = None,
     ) -> PlanResult:
         """Plan for at most `budget` seconds of wall time."""
-        plain = _plain(instance, options)
+        plain = is_plain(instance, options)
         log = IncumbentLog(instance, options, on_incumbent, gentle=plain)
         impossible = log.without_plan()
         if impossible is not None:
@@ -71,8 +71,8 @@ class LayeredPlanner(BasePlanner):
         return _Solve(instance, options, budget, log).run()
 
     def build_model(self, instance: Instance, options: SolveOptions) -> Milp:
-        """Return the MILP of the relaxation at the sound horizon (of the family: a short one), or `options.horizon`."""
-        if not _plain(instance, options):
+        """Return the MILP of the relaxation at the sound horizon (of the family: a short one), or `horizon`."""
+        if not is_plain(instance, options):
             from smash.planners.layered.family.solve import first_model
 
             return first_model(instance, options)
@@ -80,12 +80,6 @@ class LayeredPlanner(BasePlanner):
 
         problem = LayeredProblem.of(instance, options)
         return build_layered(problem, options, options.horizon or problem.sound_horizon).milp
-
-
-def _plain(instance: Instance, options: SolveOptions) -> bool:
-    """Whether the three-node model holds the instance: every action costs 1, and topple alone aggregates."""
-    further = any(kind.name != "topple" for kind in kinds_of(instance, options))
-    return instance.costs.plain and not further and not any(carrier.holds for carrier in instance.carriers)
 
 
 class _Solve:

@@ -2,9 +2,10 @@
 
 As in `smash.planners.layered.events`, gravity shrinks a chain of height-indexed nodes: a block *waits* where it
 starts until its first removal, *rests* on any location, deck or the table region, and is *home* after its last
-placement. What rests on a location keeps all else from leaving or filling it; only the order of what rests there is
-left free, and a block without a goal is forgotten after its second removal. So every plan with one action a layer is
-a solution of the same cost, and the optimum bounds all plans that the layers hold; most solutions are plans.
+placement. What rests on a location keeps all else from leaving or filling it; the order of what rests there is left
+free (unless `ordered`), and a block without a goal is forgotten after its second removal. So every plan with one
+action a layer is a solution of the same cost or less, and the optimum bounds all plans that the layers hold; most
+solutions are plans.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from smash.planners.demands import Demands
 from smash.planners.layered.family.carriers import CarrierColumns, add_carriers
 from smash.planners.layered.family.moving import Moving
 from smash.planners.layered.family.places import NO_EDGE, Places
+from smash.planners.layered.family.resting_order import OrderColumns, add_resting_order
 from smash.planners.milp import Ints, Milp, MilpBuilder
 from smash.problem.model import Instance, PlanOptions
 
@@ -59,6 +61,8 @@ def build_relaxed(
     lower_bound: int = 0,
     upper_bound: int | None = None,
     deadline: float = math.inf,
+    *,
+    ordered: bool = False,
 ) -> RelaxedModel:
     """Build the relaxation.
 
@@ -70,11 +74,17 @@ def build_relaxed(
         lower_bound: a proven bound on the cost of every plan, as a row.
         upper_bound: only plans cheaper than this are of interest (None: all are).
         deadline: when to give up [s, clock of `perf_counter`].
+        ordered: keep the order of what rests on one another (`smash.planners.layered.family.resting_order`).
 
     Raises:
         OutOfTime: where the deadline has passed.
     """
-    return _Builder(instance, demands, options, horizon, deadline).build(lower_bound, upper_bound)
+    builder = _Builder(instance, demands, options, horizon, deadline)
+    builder.add_rows()
+    if ordered:
+        columns = OrderColumns(builder.move, builder.fall, builder.lifted, builder.rests)
+        add_resting_order(builder.milp, builder.moving, columns)
+    return builder.finish(lower_bound, upper_bound)
 
 
 class _Builder:
@@ -92,7 +102,7 @@ class _Builder:
         self.layers = horizon
         self.milp = MilpBuilder(deadline)
 
-    def build(self, lower_bound: int, upper_bound: int | None) -> RelaxedModel:
+    def add_rows(self) -> None:
         self._add_columns()
         self._start_and_end()
         self._conserve()
@@ -104,6 +114,8 @@ class _Builder:
         self._lifts()
         self._one_action()
         self._no_idle_layers()
+
+    def finish(self, lower_bound: int, upper_bound: int | None) -> RelaxedModel:
         self._cost(lower_bound, upper_bound)
         return RelaxedModel(
             self.places,

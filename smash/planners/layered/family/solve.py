@@ -27,6 +27,10 @@ BUILD_SHARE = 0.6
 """Share of the time left that the building of a model may take."""
 FLOW_SHARE = 0.2
 """Share of the time left that a program without order may take."""
+TWIN_SHARE = 0.1
+"""Share of the time left for the first plans."""
+RELAXATION_SHARE = 0.5
+"""Share of the time left that one relaxation may take."""
 UNPROBED = {"presolve": "off"}
 """For the relaxation: the solver's presolve takes most of its time, keeps to no limit, and saves no search."""
 BOUND_ORIGIN = "layered flow without order"
@@ -90,6 +94,8 @@ class FamilySolve:
         self._flow_bound()
         if self.impossible:
             return self.log.result(infeasible=True, bound_origin=BOUND_ORIGIN, details=self.details)
+        if self.options.horizon is None:
+            self._twin()
         self._relaxations()
         self._grow()
         return self.log.result(details=self.details)
@@ -110,21 +116,40 @@ class FamilySolve:
         if found.actions is not None:
             self.log.offer(found.actions, name)
 
+    def _twin(self) -> None:
+        """Take first plans from the three-node model of the plain twin, for a share of the time left."""
+        from smash.planners.family.twin import from_twin, plain_twin
+        from smash.planners.layered.planner import LayeredPlanner
+
+        def found(_seconds: float, _cost: int, actions: Sequence[Action]) -> None:
+            self.log.offer(tuple(from_twin(self.instance, actions)), "milp")
+
+        options = replace(self.options, warm_start=None, horizon=None)
+        LayeredPlanner().solve(plain_twin(self.instance), options, TWIN_SHARE * (self.deadline - perf_counter()), found)
+
     def _relaxations(self) -> None:
-        """Solve the relaxation at a short horizon, for plans, then at one that holds all cheaper ones: a bound."""
+        """Solve the relaxation at a short horizon, for plans, then at one that holds all cheaper ones, for the bound.
+
+        The order of what rests on one another is added where a solution without it is no plan.
+        """
         chosen = self.options.horizon
-        horizon = chosen or short_horizon(self.demands, self.places)
-        while not self._done():
-            enough = self._enough()
-            if self._done():
+        short = chosen or short_horizon(self.demands, self.places)
+        ordered = False
+        for sound in (False, True):
+            while not self._done():
+                horizon = self._enough() if sound and chosen is None else short
+                if horizon is None or self._done():
+                    return
+                result = self._relaxed_stage(horizon, ordered=ordered)
+                if ordered or result is None or result.objective is None or self._is_met(result.objective):
+                    break
+                ordered = True
+            if chosen is not None:
                 return
-            if enough is not None and chosen is None:
-                horizon = enough
-            result = self._relaxed_stage(horizon)
-            if result is None or chosen is not None:
-                return
-            if enough is not None or self.log.cost is None:
-                return
+
+    def _is_met(self, objective: float) -> bool:
+        """Whether a solution of this cost was a plan."""
+        return self.log.cost is not None and self.log.cost <= objective + 0.5
 
     def _grow(self) -> None:
         """Solve the model at growing horizons, until the horizon holds every cheaper plan."""
@@ -183,14 +208,16 @@ class FamilySolve:
         outcome = {"status": result.status, "objective": result.objective, "bound": result.bound}
         self.details["stages"].append(stage | outcome | {"nodes": result.nodes, "seconds": round(result.seconds, 4)})
 
-    def _relaxed_stage(self, horizon: int) -> MilpResult | None:
+    def _relaxed_stage(self, horizon: int, *, ordered: bool) -> MilpResult | None:
         from smash.planners.layered.family.decode import RelaxedReader
         from smash.planners.layered.family.relaxed import build_relaxed
 
         def decode(model: RelaxedModel, vector: Floats) -> Sequence[Action] | None:
             return RelaxedReader(self.instance, self.options, model, vector).actions()
 
-        return self._stage(horizon, "relaxation", build_relaxed, decode, UNPROBED)
+        build = partial(build_relaxed, ordered=ordered)
+        name = "ordered relaxation" if ordered else "relaxation"
+        return self._stage(horizon, name, build, decode, share=RELAXATION_SHARE, solver=UNPROBED)
 
     def _positions_stage(self, horizon: int) -> MilpResult | None:
         from smash.planners.layered.family.decode import read_family
@@ -207,6 +234,8 @@ class FamilySolve:
         name: str,
         build: Callable[..., Model],
         decode: Callable[[Model, Floats], Sequence[Action] | None],
+        *,
+        share: float = 1.0,
         solver: dict[str, str] | None = None,
     ) -> MilpResult | None:
         """Build and solve a model whose every plan is cheaper than the best one; None where building took too long."""
@@ -229,7 +258,7 @@ class FamilySolve:
 
         result = highs.solve(
             model.milp,
-            time_limit=self.deadline - perf_counter(),
+            time_limit=share * (self.deadline - perf_counter()),
             threads=self.options.threads,
             seed=self.options.seed,
             options=solver,
