@@ -33,6 +33,8 @@ RELAXATION_SHARE = 0.5
 """Share of the time left that one relaxation may take."""
 UNPROBED = {"presolve": "off"}
 """For the relaxation: the solver's presolve takes most of its time, keeps to no limit, and saves no search."""
+TOLERANCE = 1e-6
+"""Of the solver, relative: the costs of actions may be tens of thousands."""
 BOUND_ORIGIN = "layered flow without order"
 
 
@@ -55,6 +57,11 @@ def first_model(instance: Instance, options: SolveOptions) -> Milp:
     demands = demands_of(instance)
     horizon = options.horizon or short_horizon(demands, Places.of(instance, options))
     return build_relaxed(instance, demands, options, horizon).milp
+
+
+def _whole(bound: float) -> int:
+    """Return the whole number that a solver's bound on whole costs proves, its tolerance left out."""
+    return ceil(bound - TOLERANCE * max(1.0, abs(bound)))
 
 
 class _Built(Protocol):
@@ -172,7 +179,7 @@ class FamilySolve:
         if result is not None and result.status == "infeasible":
             self.impossible = True
         elif result is not None and isfinite(result.bound):
-            self.log.prove(ceil(result.bound - 1e-6), BOUND_ORIGIN)
+            self.log.prove(_whole(result.bound), BOUND_ORIGIN)
 
     def _enough(self) -> int | None:
         """Return a number of layers that holds a cheapest plan, if it is cheaper than the best; None: not known."""
@@ -272,5 +279,5 @@ class FamilySolve:
             # Every plan cheaper than `best` is a solution: what bounds the solutions, or `best`, bounds all plans.
             least = best if result.status == "infeasible" else result.bound
             if isfinite(least):
-                self.log.prove(min(best, ceil(least - 1e-6)), f"layered {name} at a horizon of {horizon}")
+                self.log.prove(min(best, _whole(least)), f"layered {name} at a horizon of {horizon}")
         return result
