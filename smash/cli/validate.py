@@ -22,7 +22,11 @@ def command(instance: Path, plan: Path) -> None:
       smash validate examples/figure1.json plan.json
     """
     filed = read_plan(plan)
-    verdict = check_plan(read_instance(instance), filed)
+    problem = read_instance(instance)
+    verdict = check_plan(problem, filed)
     if not verdict.accepted:
         fail(f"{plan}: {verdict}", 3)
-    click.echo(f"accepted: {filed.cost} actions")
+    costs, length = problem.costs, len(filed.actions or ())
+    click.echo(
+        f"accepted: {length} actions" if costs.plain else f"accepted: {length} actions, {filed.cost} {costs.unit}"
+    )

@@ -64,10 +64,18 @@ class SmashPlanner(BasePlanner):
 
         began = perf_counter()
         deadline = began + budget - min(SPARE_SECONDS, budget / 10)
-        details: dict[str, Any] = {"exact_methods": ["search over states"]}
+        details: dict[str, Any] = {"exact_methods": ["search over states", "layered model"]}
         offer_twin(instance, options, log, began + GREEDY_SHARE * budget)
-        if search_family(instance, options, log, deadline, details):
+        half = perf_counter() + SEARCH_SHARE * (deadline - perf_counter())
+        if search_family(instance, options, log, half, details):
             return log.result(infeasible=True, bound_origin="astar", details=details)
+        if not log.proven and len(instance.blocks) <= FEW_BLOCKS:
+            from smash.planners.layered import LayeredPlanner
+
+            left = deadline - perf_counter()
+            answer = LayeredPlanner().solve(instance, options, left, Relay(log, "milp"))
+            if answer.status == "infeasible":
+                return log.result(infeasible=True, bound_origin=answer.bound_origin, details=details)
         return log.result(details=details)
 
 

@@ -67,4 +67,4 @@ def test_a_planner_that_counts_actions_of_three_kinds_says_so():
 def test_smash_says_which_of_its_methods_are_exact():
     result = SmashPlanner().solve(scoop(), SolveOptions(), 10.0)
     assert result.status == "optimal"
-    assert result.details["exact_methods"] == ["search over states"]
+    assert result.details["exact_methods"] == ["search over states", "layered model"]
