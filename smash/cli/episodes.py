@@ -9,6 +9,7 @@ import click
 
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.asked import note_asked
+from smash.experiments.display import span
 from smash.experiments.episodes import (
     EPISODE_RUN_FORMAT,
     EPISODES,
@@ -65,11 +66,11 @@ def command(
     runs = episode_runs(results, range(seeds), policies, None if scene is None else str(scene.resolve()), labels)
     with stopped_by_signals() as stop, Records(results, EPISODES, EPISODE_RUN_FORMAT) as records:
         left = sum(run.key not in records.finished for run in runs)
-        hours = left * SECONDS_AN_EPISODE / jobs / 3600
+        about = span(left * SECONDS_AN_EPISODE / jobs)
         if records.set_aside:
             words = "was damaged: set aside, its episode is carried out again"
             click.echo(f"the last line of {records.path} {words}", err=True)
-        click.echo(f"{len(runs)} episodes, {left} left, about {hours:.1f} h with {jobs} at a time", err=True)
+        click.echo(f"{len(runs)} episodes, {left} left, about {about} with {jobs} at a time", err=True)
         if dry_run:
             return
         note_asked(results, seeds, policies, scene, labels)

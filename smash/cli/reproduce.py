@@ -13,8 +13,9 @@ import click
 
 import smash
 from smash.cli.signals import stopped_by_signals
+from smash.experiments.display import span
 from smash.experiments.locking import hold
-from smash.experiments.manifest import minutes, write_manifest
+from smash.experiments.manifest import write_manifest
 from smash.experiments.reproduce import Planned, Record, Reproduction, last_line
 from smash.experiments.steps import read_steps
 from smash.problem.errors import MalformedFile, SmashError
@@ -88,12 +89,12 @@ def _show(reproduction: Reproduction, planned: Sequence[Planned]) -> None:
     if not console.is_terminal:
         console.width = 120
     left = [entry for entry in planned if entry.plan in LEFT]
-    total = minutes(60 * sum(entry.step.minutes for entry in left))
+    total = span(60 * sum(entry.step.minutes for entry in left))
     words = f"{len(left)} of {len(planned)} steps to do, about {total} on 2 cores" if left else "nothing to do"
     click.echo(f"{reproduction.steps.name} in {reproduction.out}: {words}")
     table = Table("step", "what", "about", "plan", "why")
     for entry in planned:
-        took = minutes(60 * entry.step.minutes)
+        took = span(60 * entry.step.minutes)
         table.add_row(*(Text(cell) for cell in (entry.step.name, entry.step.about, took, entry.plan, entry.why)))
     console.print(table)
 
@@ -126,22 +127,22 @@ class _Progress:
         self._number += 1
         self._log, self._said = log, monotonic()
         self._words = f"[{self._number}/{self._total}] {planned.step.name}"
-        self._say(f"{self._words}: about {minutes(60 * planned.step.minutes)}; its output: {log}")
+        self._say(f"{self._words}: about {span(60 * planned.step.minutes)}; its output: {log}")
 
     def running(self, seconds: float) -> None:
         """Show the last line that the step has printed."""
         if self._status is not None:
             from rich.text import Text
 
-            self._status.update(Text(f"{self._words}, {minutes(seconds)}: {last_line(self._log)}"[:160]))
+            self._status.update(Text(f"{self._words}, {span(seconds)}: {last_line(self._log)}"[:160]))
         elif monotonic() - self._said > SECONDS_BETWEEN_LINES:
             self._said = monotonic()
-            self._say(f"{self._words}, {minutes(seconds)}: {last_line(self._log)}")
+            self._say(f"{self._words}, {span(seconds)}: {last_line(self._log)}")
 
     def ended(self, record: Record) -> None:
         """Say how a step ended."""
         words = record.problem or f"{len(record.products)} products"
-        self._say(f"{self._words}: {record.state}, {minutes(record.seconds)}: {words}")
+        self._say(f"{self._words}: {record.state}, {span(record.seconds)}: {words}")
 
     def _say(self, words: str) -> None:
         if self._status is None:

@@ -56,6 +56,7 @@ def command(
         click.echo(f"{len(runs)} runs, at most {hours:.1f} h with {width} at a time, to be recorded in {out}")
         return
     if slurm_script is not None:
+        out.mkdir(parents=True, exist_ok=True)  # Slurm writes its log there, and makes no directory
         write_text(slurm_script, batch_script(runs, experiment, out, width))
         click.echo(f"{slurm_script}: {len(runs)} runs with {width} workers, to be submitted with sbatch")
         return

@@ -31,10 +31,13 @@ def command(highest_cut: int, most: int, seeds: int, scene: Path | None, out: Pa
     from smash.execution.estimates import write_estimates
     from smash.execution.scene_file import default_scene, read_scene
     from smash.execution.topple_map import Trial, draw, estimates, run_trial
+    from smash.experiments.json_lines import set_damaged_aside
 
     tabletop = default_scene() if scene is None else read_scene(scene)
     out.mkdir(parents=True, exist_ok=True)
     path = out / "trials.jsonl"
+    if set_damaged_aside(path, _is_trial):
+        click.echo(f"the last line of {path} was damaged: set aside, its trial is done again", err=True)
     lines = path.read_bytes().splitlines() if path.exists() else []
     trials = {trial.key: trial for trial in (msgspec.json.decode(line, type=Trial) for line in lines)}
     wanted = [
@@ -58,3 +61,15 @@ def command(highest_cut: int, most: int, seeds: int, scene: Path | None, out: Pa
     write_estimates(found, out / "estimates.json")
     draw(chosen, out / "map.png")
     click.echo(f"{len(chosen)} trials in {out}; suggested --max-topple {found.suggested_max_topple}")
+
+
+def _is_trial(line: bytes) -> bool:
+    import msgspec
+
+    from smash.execution.topple_map import Trial
+
+    try:
+        msgspec.json.decode(line, type=Trial)
+    except msgspec.MsgspecError:
+        return False
+    return True

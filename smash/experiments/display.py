@@ -70,7 +70,7 @@ class Progress:
         running = min(left, self._width, self._begun - self._ended if self._pool_begins else left)
         words = f"{running} running, {left - running} left"
         if self._ended:
-            words += f", about {_span((monotonic() - self._started) / self._ended * left)} to go"
+            words += f", about {span((monotonic() - self._started) / self._ended * left)} to go"
         return words
 
     def _show(self) -> None:
@@ -78,8 +78,9 @@ class Progress:
             self._bar.update(self._task, completed=self._done, description=self._words())
 
 
-def _span(seconds: float) -> str:
-    if seconds < 120:
+def span(seconds: float) -> str:
+    """Return a span of time as people say it."""
+    if seconds < 100:
         return f"{seconds:.0f} s"
     return f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.1f} h"
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import msgspec
 
+from smash.experiments.display import span
 from smash.experiments.environment import machine
 from smash.experiments.reproduce import Planned, Reproduction
 from smash.problem.files import write_text
@@ -92,7 +93,7 @@ def manifest_page(document: dict[str, Any]) -> str:
         "",
         document["about"],
         "",
-        f"- {len(run)} of {len(steps)} steps run, {minutes(document['seconds'])} in all, "
+        f"- {len(run)} of {len(steps)} steps run, {span(document['seconds'])} in all, "
         f"from {document['started'] or '–'} to {document['ended'] or '–'}",
         f"- code: {'; '.join(_commit(found) for found in document['commits']) or '–'}",
         f"- machine: {host['processor']}, {host['usable_cores']} of {host['cores']} cores, "
@@ -103,9 +104,9 @@ def manifest_page(document: dict[str, Any]) -> str:
         "|---|---|---|---|---|---|",
     ]
     for step in steps:
-        took, of = minutes(step["seconds"]) if "seconds" in step else "–", step.get("load_average")
+        took, of = span(step["seconds"]) if "seconds" in step else "–", step.get("load_average")
         busy = f"{of['mean']:.1f}, {of['most']:.1f}" if of else "–"
-        estimated = minutes(60 * step["estimated_minutes"])
+        estimated = span(60 * step["estimated_minutes"])
         lines.append(f"| {step['name']} | {step['about']} | {step['state']} | {estimated} | {took} | {busy} |")
     return "\n".join([*lines, "", *_left_out(steps), *_made(steps)]) + "\n"
 
@@ -145,10 +146,3 @@ def _commit(found: dict[str, Any]) -> str:
     if found["hash"] is None:
         return "of no commit that is known"
     return f"commit {found['hash'][:12]}{', with changes that no commit holds' if found['dirty'] else ''}"
-
-
-def minutes(seconds: float) -> str:
-    """Return a span of time as people say it."""
-    if seconds < 60:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.1f} h"

@@ -13,6 +13,7 @@ from typing import Any, Self
 from smash.experiments.environment import commit, load, machine, versions
 from smash.experiments.experiment import Run, instance_hash
 from smash.experiments.job import Report
+from smash.experiments.json_lines import set_damaged_aside
 from smash.experiments.locking import hold
 from smash.problem.errors import MalformedFile
 from smash.problem.files import PLAN_FORMAT_2, instance_document, plan_document, plan_from_document
@@ -94,13 +95,12 @@ class Records:
     def __init__(self, directory: Path, name: str = RUNS, wanted: str = RUN_FORMAT) -> None:
         self.path = directory / name
         self.wanted = wanted
-        self.set_aside = 0
         self._lock = hold(directory)
         try:
-            self._file = open(self.path, "a+b")  # noqa: SIM115 - open until `__exit__`
+            self.set_aside = set_damaged_aside(self.path, lambda line: _is_record(line, wanted))
+            self._file = open(self.path, "ab")  # noqa: SIM115 - open until `__exit__`
         except OSError as error:
             raise MalformedFile(str(self.path), f"cannot be written: {error.strerror}") from None
-        self._repair(directory / (DAMAGED if name == RUNS else f"{self.path.stem}.damaged"))
         self.commits = {
             record["key"]: (record.get("commit") or {}).get("hash") for record in read_records(self.path, wanted)
         }
@@ -130,19 +130,6 @@ class Records:
         except OSError as error:
             raise MalformedFile(str(self.path), f"cannot be written: {error.strerror}") from None
         self.finished.add(record["key"])
-
-    def _repair(self, damaged: Path) -> None:
-        """Move a last line that a kill left half-written to a file of its own."""
-        self._file.seek(0)
-        content = self._file.read()
-        end = content.rstrip(b"\n").rfind(b"\n") + 1
-        last = content[end:]
-        if not last or (last.endswith(b"\n") and _is_record(last, self.wanted)):
-            return
-        with open(damaged, "ab") as aside:
-            aside.write(last.rstrip(b"\n") + b"\n")
-        self._file.truncate(end)
-        self.set_aside = 1
 
 
 def read_records(path: Path, wanted: str = RUN_FORMAT) -> Iterator[dict[str, Any]]:

@@ -63,4 +63,4 @@ def test_the_command_writes_it_and_runs_nothing(tmp_path):
     assert ended.exit_code == 0, ended.output
     assert "12 runs with 3 workers" in ended.stdout
     assert directive((tmp_path / "job.sh").read_text(), "job-name") == "smash-few"
-    assert not (tmp_path / "out").exists()
+    assert list((tmp_path / "out").iterdir()) == []
