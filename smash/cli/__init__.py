@@ -18,6 +18,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "plan": ("smash.cli.plan", "plan one instance and print or write the plan"),
     "execute": ("smash.cli.execute", "carry a plan out: Panda, PyBullet, partially grounded"),
     "episodes": ("smash.cli.episodes", "carry out every plan of a sweep"),
+    "costs": ("smash.cli.costs", "fit the costs of actions to the durations of episodes"),
     "draw-scene": ("smash.cli.draw_scene", "draw the table to scale and check the paper's two conditions"),
     "topple-map": ("smash.cli.topple_map", "measure where toppled blocks land, and what topples succeed"),
     "validate": ("smash.cli.validate", "judge a plan by the law"),

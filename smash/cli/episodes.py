@@ -14,6 +14,7 @@ from smash.experiments.episodes import (
     EPISODE_RUN_FORMAT,
     EPISODES,
     POLICIES,
+    REPLAYS,
     EpisodeRun,
     episode_runs,
     run_all,
@@ -39,6 +40,7 @@ SECONDS_AN_EPISODE = 5.0
 )
 @click.option("--label", "labels", multiple=True, metavar="NAME", help="Only plans of this planner; repeatable.")
 @click.option("--scene", type=click.Path(path_type=Path), help="Scene file (default: the built-in scene).")
+@click.option("--replays", is_flag=True, help="Write a 3D replay of each plan's first episode to RESULTS/replays.")
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="At a time.")
 @click.option("--dry-run", is_flag=True, help="Say how many episodes are left and how long they take at a guess.")
 def command(
@@ -47,6 +49,7 @@ def command(
     policies: tuple[str, ...],
     labels: tuple[str, ...],
     scene: Path | None,
+    replays: bool,
     jobs: int,
     dry_run: bool,
 ) -> None:
@@ -63,7 +66,10 @@ def command(
         from smash.execution.scene_file import read_scene
 
         read_scene(scene)
-    runs = episode_runs(results, range(seeds), policies, None if scene is None else str(scene.resolve()), labels)
+    file = None if scene is None else str(scene.resolve())
+    runs = episode_runs(results, range(seeds), policies, file, labels, replays)
+    if replays:
+        (results / REPLAYS).mkdir(exist_ok=True)
     with stopped_by_signals() as stop, Records(results, EPISODES, EPISODE_RUN_FORMAT) as records:
         left = sum(run.key not in records.finished for run in runs)
         about = span(left * SECONDS_AN_EPISODE / jobs)

@@ -12,7 +12,7 @@ from smash.execution.tabletop import Slot, Tabletop
 
 REACH = (0.30, 0.65)
 """Radii between which the hand reaches every height from above [m]."""
-STACK, BUFFER, STRIP = "#2563a8", "#8a8f98", "#d9822b"
+STACK, BUFFER, STRIP, TRAY = "#2563a8", "#8a8f98", "#d9822b", "#7a5a34"
 
 
 def draw(tabletop: Tabletop, path: Path) -> None:
@@ -33,11 +33,15 @@ def draw(tabletop: Tabletop, path: Path) -> None:
         _slot(axis, slot, tabletop.side, STACK, f"s{index}")
     for index, slot in enumerate(tabletop.buffers, start=1):
         _slot(axis, slot, tabletop.side, BUFFER, f"u{index}")
+    for index, slot in enumerate(tabletop.stations, start=1):
+        _station(axis, slot, tabletop, f"t{index}")
     axis.set_aspect("equal")
     axis.set(xlim=(-0.85, 0.85), ylim=(-0.85, 0.85), xlabel="x [m]", ylabel="y [m]")
     axis.set_title(f"Scene {tabletop.name!r}: blocks of {100 * tabletop.side:.1f} cm, to scale")
+    trays = [Patch(facecolor="none", edgecolor=TRAY, label="station of a tray")] if tabletop.stations else []
     figure.legend(
         handles=[
+            *trays,
             Line2D([], [], marker="o", color="#3b3f45", linestyle="none", markersize=10, label="robot's base"),
             Patch(color=STACK, label="stack"),
             Patch(color=BUFFER, label="buffer"),
@@ -49,6 +53,16 @@ def draw(tabletop: Tabletop, path: Path) -> None:
         frameon=False,
     )
     figure.savefig(path, dpi=150)
+
+
+def _station(axis: Any, slot: Slot, tabletop: Tabletop, name: str) -> None:
+    from matplotlib.patches import Polygon
+
+    assert tabletop.tray is not None
+    length, width = tabletop.tray.size
+    corners = _corners(slot.x, slot.y, slot.angle, width / 2, length / 2)
+    axis.add_patch(Polygon(corners, facecolor="none", edgecolor=TRAY, linewidth=1.5, zorder=2))
+    axis.text(slot.x, slot.y, name, ha="center", va="center", fontsize=8, zorder=4)
 
 
 def _slot(axis: Any, slot: Slot, side: float, colour: str, name: str) -> None:

@@ -21,6 +21,7 @@ SIZE = (960, 640)
 FILM_SIZE = (640, 426)
 SPEED_UP = 4
 """A film runs this much faster than simulated time."""
+TRAY_COLOUR = (0.62, 0.47, 0.30)
 FILMS = (".mp4", ".gif")
 
 Image = NDArray[np.uint8]
@@ -34,7 +35,7 @@ def block_colours(count: int) -> list[tuple[float, float, float]]:
 class Stage:
     """Robot, table, slots and blocks to be posed and photographed; use as a context manager."""
 
-    def __init__(self, tabletop: Tabletop, blocks: int) -> None:
+    def __init__(self, tabletop: Tabletop, blocks: int, carriers: int = 0) -> None:
         import pybullet_data
 
         self.client: Any = connect(gui=False)
@@ -48,6 +49,7 @@ class Stage:
             turn = c.getQuaternionFromEuler([0, 0, slot.angle])
             self._box([half * 1.15, half * 1.15, 0.0005], [slot.x, slot.y, 0.0005], colour, turn)
         self.blocks = [self._box([half] * 3, [0, 0, 0], colour) for colour in block_colours(blocks)]
+        self.trays = [self._tray(tabletop) for _ in range(carriers)]
 
     def __enter__(self) -> Self:
         return self
@@ -68,11 +70,24 @@ class Stage:
         shape = c.createVisualShape(c.GEOM_BOX, halfExtents=half, rgbaColor=[*colour, 1])
         return int(c.createMultiBody(0, -1, shape, position, turn))
 
+    def _tray(self, tabletop: Tabletop) -> int:
+        c = self.client
+        assert tabletop.tray is not None
+        centres, half = (array.tolist() for array in tabletop.tray.boxes)
+        shape = c.createVisualShapeArray(
+            shapeTypes=[c.GEOM_BOX] * len(half),
+            halfExtents=half,
+            visualFramePositions=centres,
+            rgbaColors=[[*TRAY_COLOUR, 1]] * len(half),
+        )
+        return int(c.createMultiBody(0, -1, shape, [0, 0, 0]))
+
     def pose(self, recording: Recording, frame: int) -> None:
         """Move everything to where it was in a frame."""
         for joint, value in zip((*ARM, *FINGERS), recording.joints[frame], strict=True):
             self.client.resetJointState(self.robot, joint, float(value))
-        for body, row in zip(self.blocks, recording.blocks[frame], strict=True):
+        moved = np.concatenate([recording.blocks[frame], recording.trays[frame]])
+        for body, row in zip((*self.blocks, *self.trays), moved, strict=True):
             self.client.resetBasePositionAndOrientation(body, row[:3].tolist(), row[3:].tolist())
 
     def photograph(self, size: tuple[int, int]) -> Image:
@@ -101,7 +116,7 @@ def write_stills(path: Path, recording: Recording, tabletop: Tabletop, moments: 
     figure = Figure(figsize=(4.8 * len(moments), 3.5), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(1, len(moments), squeeze=False)[0]
-    with Stage(tabletop, recording.blocks[0].shape[0]) as stage:
+    with Stage(tabletop, len(recording.blocks[0]), len(recording.trays[0])) as stage:
         for axis, (caption, moment) in zip(axes, moments, strict=True):
             stage.pose(recording, recording.at(moment))
             axis.imshow(stage.photograph(SIZE))
@@ -133,7 +148,7 @@ def write_film(path: Path, recording: Recording, tabletop: Tabletop) -> None:
 
 
 def _images(recording: Recording, tabletop: Tabletop, every: int) -> Iterator[Image]:
-    with Stage(tabletop, recording.blocks[0].shape[0]) as stage:
+    with Stage(tabletop, len(recording.blocks[0]), len(recording.trays[0])) as stage:
         for frame in range(0, len(recording.times), every):
             stage.pose(recording, frame)
             yield stage.photograph(FILM_SIZE)

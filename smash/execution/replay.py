@@ -44,6 +44,9 @@ def write_replay(path: Path, recording: Recording, tabletop: Tabletop, episode: 
         "times": _packed(np.array(recording.times)),
         "links": _packed(np.array(recording.links)),
         "poses": _packed(np.array(recording.blocks)),
+        "carriers": len(recording.trays[0]),
+        "tray": [] if tabletop.tray is None else np.hstack(tabletop.tray.boxes).tolist(),
+        "trays": _packed(np.array(recording.trays)),
         "actions": [
             {"begun": row.begun, "text": " ".join(map(str, row.action)), "origin": row.origin, "outcome": row.outcome}
             for row in episode.actions

@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import os
 import sys
+from pathlib import Path
 from typing import Any
 
+from smash.execution.capture import Capture
 from smash.execution.episode import Episode, episode_text
 from smash.execution.executor import Executor
 from smash.execution.policy import OPEN
@@ -30,13 +32,15 @@ PLAN_FIELDS = (
 
 
 def run_question(question: dict[str, Any]) -> Episode:
-    """Carry out the plan of a sweep's record: `record`, `seed`, `policy` (replan or open), `scene` (a path or None)."""
+    """Carry out the plan of a sweep's record: its `seed`, `policy`, `scene`, `replay` (paths or None)."""
     record = question["record"]
     instance = instance_from_document(record["instance_document"])
     filed = {field: record[field] for field in PLAN_FIELDS} | {"without": record.get("without", [])}
     plan = plan_from_document({"format": PLAN_FORMAT_2, **filed})
     scene = default_scene() if question["scene"] is None else read_scene(question["scene"])
     seed, is_open = question["seed"], question["policy"] == "open"
+    replay = question.get("replay")
+    capture = Capture(replay=None if replay is None else Path(replay))
     executor = Executor(
         instance,
         plan,
@@ -44,8 +48,11 @@ def run_question(question: dict[str, Any]) -> Episode:
         seed=seed,
         policy=OPEN if is_open else None,
         replanner=None if is_open else replanner(plan.planner, REPLAN_BUDGET, seed),
+        on_frame=capture.frame,
     )
-    return executor.run()
+    episode = executor.run()
+    capture.finish(executor, episode)
+    return episode
 
 
 def main() -> None:

@@ -6,9 +6,10 @@ that a crash of the physics costs one episode alone; a stopped run is continued 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from threading import Event
@@ -23,6 +24,7 @@ from smash.problem.model import Instance, PositionsGoal
 
 EPISODE_RUN_FORMAT = "smash-episode-run/1"
 EPISODES = "episodes.jsonl"
+REPLAYS = "replays"
 POLICIES = ("replan", "open")
 """`replan`: the executor repairs, retries and replans; `open`: the paper's open pipeline."""
 REPLAN_BUDGET = 10.0
@@ -31,12 +33,13 @@ REPLAN_BUDGET = 10.0
 
 @dataclass(frozen=True, slots=True)
 class EpisodeRun:
-    """One episode to be run: the record that holds its plan, the seed, the policy, the scene file."""
+    """One episode to be run: the record that holds its plan, seed, policy, scene file, the replay's file."""
 
     record: dict[str, Any]
     seed: int
     policy: str
     scene: str | None
+    replay: str | None = None
 
     @property
     def key(self) -> str:
@@ -51,6 +54,7 @@ def episode_runs(
     policies: Sequence[str],
     scene: str | None = None,
     labels: Sequence[str] = (),
+    replays: bool = False,
 ) -> list[EpisodeRun]:
     """Return the episodes of all plans that a sweep has recorded, seed by seed, so that a part is a fair sample.
 
@@ -60,6 +64,7 @@ def episode_runs(
         policies: Of `POLICIES`.
         scene: A scene file, or None for the built-in scene.
         labels: Only plans of planners so labelled; all where there are none.
+        replays: Write a replay page of each plan's first episode beside the records.
 
     Raises:
         MalformedFile: where the records are damaged.
@@ -67,7 +72,15 @@ def episode_runs(
     plans = [record for record in read_records(results / RUNS) if record["actions"] is not None]
     plans = [record for record in plans if record["outcome"] != "refused" and record["kind"] != "cutoff"]
     plans = [record for record in plans if not labels or record["label"] in labels]
-    return [EpisodeRun(record, seed, policy, scene) for seed in seeds for record in plans for policy in policies]
+    runs = [EpisodeRun(record, seed, policy, scene) for seed in seeds for record in plans for policy in policies]
+    return [replace(run, replay=_replay(results, run)) if replays and run.seed == seeds[0] else run for run in runs]
+
+
+def _replay(results: Path, run: EpisodeRun) -> str:
+    """The page of an episode: instance, planner, variant and policy in words that any file system takes."""
+    words = (run.record["instance"], run.record["label"], run.record["variant"], run.policy)
+    name = re.sub(r"[^A-Za-z0-9.-]+", "-", "_".join(words)).strip("-")
+    return str((results / REPLAYS / f"{name}.html").resolve())
 
 
 def run_all(
@@ -100,7 +113,7 @@ def run_all(
 def run_apart(run: EpisodeRun, crew: Crew) -> dict[str, Any]:
     """Run one episode in a process of the crew; the record's `episode` is None where that process ended badly."""
     started, begun, before = datetime.now(UTC), perf_counter(), load()
-    question = {"record": run.record, "seed": run.seed, "policy": run.policy, "scene": run.scene}
+    question = {"record": run.record, "seed": run.seed, "policy": run.policy, "scene": run.scene, "replay": run.replay}
     episode, problem = None, ""
     try:
         episode = crew.ask(question)

@@ -26,12 +26,14 @@ def suite_names() -> list[str]:
 
 
 def suite_files(suite: str) -> list[Path]:
-    """Return the instance files of a committed set or of a directory, sorted by name.
+    """Return the instance files of a committed set or of a directory, sorted by name; an instance file is its own set.
 
     Raises:
-        MalformedFile: where it is neither, or holds no instance file.
+        MalformedFile: where it is none of these, or holds no instance file.
     """
     directory = SUITES / suite if suite in suite_names() else Path(suite)
+    if directory.is_file():
+        return [directory]
     if not directory.is_dir():
         known = ", ".join(suite_names())
         raise MalformedFile(suite, f"neither a directory of instance files nor a committed set ({known})")

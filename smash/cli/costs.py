@@ -1,0 +1,54 @@
+"""`smash costs RESULTS INSTANCE`: an instance whose costs are the durations that the executor measured."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import click
+
+from smash.cli import fail
+from smash.problem.files import instance_from_document, read_instance, write_instance
+
+
+@click.command("costs")
+@click.argument("results", type=click.Path(path_type=Path, exists=True, file_okay=False))
+@click.argument("instance", type=click.Path(path_type=Path))
+@click.option("--scene", type=click.Path(path_type=Path), help="Scene file (default: the built-in scene).")
+@click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Write INSTANCE with these costs here.")
+def command(results: Path, instance: Path, scene: Path | None, out: Path | None) -> None:
+    """Fit the costs of actions and travel, in milliseconds, to the episodes of RESULTS, and say how well they fit.
+
+    Travel is measured between the places of the scene along the arc that the arm turns on. An action of INSTANCE that
+    no episode has carried out keeps its cost.
+
+    \b
+    Examples:
+      smash costs runs/scoop examples/scoop.json --scene examples/scoop-scene.toml
+      smash costs runs/tables my.json --out my-in-milliseconds.json
+    """
+    from smash.execution.scene_file import default_scene, read_scene
+    from smash.execution.unrolled import unrolled_positions
+    from smash.experiments.durations import Duration, durations, fit
+    from smash.experiments.episodes import EPISODES
+    from smash.experiments.records import RUNS, read_records
+
+    problem = read_instance(instance)
+    tabletop = default_scene() if scene is None else read_scene(scene)
+    positions = unrolled_positions(tabletop, problem)
+    filed = {record["key"]: record["instance_document"] for record in read_records(results / RUNS)}
+    measured: list[Duration] = []
+    for record in read_records(results / EPISODES):
+        if record["episode"] is not None:
+            done = instance_from_document(filed[record["run"]])
+            measured += durations(record["episode"], done, unrolled_positions(tabletop, done))
+    if not measured:
+        fail(f"{results}: no action was carried out", 2)
+    fitted = fit(measured)
+    click.echo("action      base [s]  spread [s]  count")
+    for kind, base in fitted.bases.items():
+        click.echo(f"{kind:<10}{base:>10.2f}{fitted.spread[kind]:>12.2f}{fitted.counts[kind]:>7}")
+    click.echo(f"travel    {fitted.per_metre:>10.2f} s/m; {100 * fitted.explained:.0f} % of the variance explained")
+    if out is not None:
+        costs = fitted.costs(positions)
+        write_instance(replace(problem, costs=replace(costs, actions={**problem.costs.actions, **costs.actions})), out)
