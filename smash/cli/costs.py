@@ -24,7 +24,7 @@ def command(results: Path, instance: Path, scene: Path | None, out: Path | None)
 
     \b
     Examples:
-      smash costs runs/scoop examples/scoop.json --scene examples/scoop-scene.toml
+      smash costs runs/scoop examples/scoop-seconds.json --scene examples/scoop-scene.toml
       smash costs runs/tables my.json --out my-in-milliseconds.json
     """
     from smash.execution.scene_file import default_scene, read_scene
