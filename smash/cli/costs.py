@@ -30,7 +30,7 @@ def command(results: Path, instance: Path, scene: Path | None, out: Path | None)
     from smash.execution.scene_file import default_scene, read_scene
     from smash.execution.unrolled import unrolled_positions
     from smash.experiments.durations import Duration, durations, fit
-    from smash.experiments.episodes import EPISODES
+    from smash.experiments.episodes import EPISODE_RUN_FORMAT, EPISODES
     from smash.experiments.records import RUNS, read_records
 
     problem = read_instance(instance)
@@ -38,7 +38,7 @@ def command(results: Path, instance: Path, scene: Path | None, out: Path | None)
     positions = unrolled_positions(tabletop, problem)
     filed = {record["key"]: record["instance_document"] for record in read_records(results / RUNS)}
     measured: list[Duration] = []
-    for record in read_records(results / EPISODES):
+    for record in read_records(results / EPISODES, EPISODE_RUN_FORMAT):
         if record["episode"] is not None:
             done = instance_from_document(filed[record["run"]])
             measured += durations(record["episode"], done, unrolled_positions(tabletop, done))
