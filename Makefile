@@ -7,7 +7,7 @@ STAMP := $(VENV)/.installed
 SCENES := friction-0.10 friction-0.30 friction-0.40 friction-0.50
 
 .DEFAULT_GOAL := help
-.PHONY: help test test-slow lint suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full friction topple-map reproduce reproduce-full results
+.PHONY: help test test-slow lint suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full friction topple-map scoop reproduce reproduce-full results
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -53,6 +53,11 @@ tables-full: $(STAMP) ## both tables whole: 20 instances a setting, up to 3 phys
 	$(BIN)/python -m smash episodes runs/tables-full --label fd-lama --policy replan --jobs 2
 	$(BIN)/python -m smash episodes runs/tables-full --label smash --policy replan --seeds 3 --jobs 2
 	$(BIN)/python -m analysis.execution_tables runs/tables-full
+
+scoop: $(STAMP) ## the paper's scoop: pick and place alone, with topple, scoop, lift; table and 3D replays (about 10 minutes)
+	$(BIN)/python -m smash sweep experiments/scoop.toml --out runs/scoop
+	$(BIN)/python -m smash episodes runs/scoop --label smash --seeds 3 --scene examples/scoop-scene.toml --replays --jobs 2
+	$(BIN)/python -m analysis.scoop runs/scoop
 
 friction: $(STAMP) ## the same plans under other friction, and topples by size (about 15 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/friction.toml --out runs/friction

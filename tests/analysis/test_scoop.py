@@ -1,0 +1,54 @@
+"""The table of the scoop: plans and episodes of the same variant meet in one row, savings are paired by seed."""
+
+import pandas as pd
+
+from analysis.scoop import BASELINE, scoop_table
+
+
+def run(variant, actions, cost, label="smash"):
+    return {
+        "label": label,
+        "variant": variant,
+        "instance": "scoop",
+        "actions": actions,
+        "cost": cost,
+        "status": "optimal",
+        "wall_seconds": 0.5,
+        "instance_document": {"costs": {"unit": "ms"}},
+    }
+
+
+def episode(variant, seed, execution, success=True):
+    return {
+        "label": "smash",
+        "variant": variant,
+        "instance": "scoop",
+        "seed": seed,
+        "execution": execution,
+        "success": success,
+        "replans": 0,
+    }
+
+
+def test_savings_are_over_the_seeds_on_which_both_succeeded():
+    scooped = [["pick", "a", "s"], ["place", "a", "tray"], ["carry", "tray", "right"]]
+    runs = [
+        run("topple-no-lift", scooped, 8000),
+        run(BASELINE, [["pick", "a", "s"]] * 4, 10000),
+        run("topple-no-lift", None, 8000, "fd-opt"),
+    ]
+    episodes = pd.DataFrame(
+        [
+            episode(BASELINE, 0, 10.0),
+            episode(BASELINE, 1, 99.0),
+            episode("topple-no-lift", 0, 8.0),
+            episode("topple-no-lift", 1, None, success=False),
+        ]
+    )
+    table = scoop_table(runs, episodes)
+    assert list(table["plan"]) == ["pick and place only", "+ topple, scoop"]
+    row = table.iloc[1]
+    assert row["saved [%]"].startswith("20 ")
+    assert row["saved [%]"].endswith("on 1")
+    assert (row["kinds"], row["success"], row["predicted [s]"]) == ("1 carry", "1/2", "8.0")
+    assert row["others"] == "fd-opt: 8000 optimal"
