@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from analysis.execution_tables import read_episodes
@@ -78,7 +79,7 @@ def _kinds(actions: list[list[Any]]) -> str:
 def _mean(values: pd.Series[float]) -> str:
     if values.empty:
         return "–"
-    low, high = bootstrap(values.to_numpy(dtype=float))
+    low, high = bootstrap(np.asarray(values, dtype=np.float64))
     return f"{values.mean():.1f} [{low:.1f}, {high:.1f}]"
 
 
