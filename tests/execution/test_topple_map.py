@@ -1,5 +1,7 @@
 import pytest
+from click.testing import CliRunner
 
+from smash.cli import smash
 from smash.execution.estimates import Rate, read_estimates, write_estimates
 from smash.execution.scene_file import default_scene
 from smash.execution.topple_map import Landing, Trial, draw, estimates, run_trial
@@ -54,3 +56,15 @@ def test_malformed_estimates_are_refused_in_one_line(tmp_path, text):
 def test_a_map_is_drawn(tmp_path):
     draw([trial(1, 1, True), trial(2, 3, False)], tmp_path / "map.png")
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.slow
+def test_a_map_that_was_killed_while_writing_goes_on(tmp_path):
+    arguments = ["topple-map", "--highest-cut", "1", "--most", "2", "--seeds", "1", "--out", str(tmp_path)]
+    assert CliRunner().invoke(smash, arguments).exit_code == 0
+    whole = (tmp_path / "trials.jsonl").read_bytes()
+    (tmp_path / "trials.jsonl").write_bytes(whole[:-30])
+    ended = CliRunner().invoke(smash, arguments)
+    assert ended.exit_code == 0, ended.exception
+    assert "was damaged: set aside" in ended.stderr
+    assert (tmp_path / "trials.jsonl").read_bytes() == whole

@@ -160,8 +160,10 @@ def test_an_interrupted_one_ends_at_once_and_keeps_what_had_ended(results, tmp_p
     running = subprocess.Popen(
         [sys.executable, "-m", "smash", "episodes", str(tmp_path)], stderr=subprocess.PIPE, text=True
     )
-    time.sleep(1.5)
+    said = running.stderr.readline()
+    assert "1 episodes, 1 left" in said
+    time.sleep(0.5)
     running.send_signal(signal.SIGINT)
-    _, said = running.communicate(timeout=8)
+    _, said = running.communicate(timeout=30)
     assert running.returncode == 130
     assert "start again" in said.splitlines()[-1]
