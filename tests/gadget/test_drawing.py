@@ -14,7 +14,7 @@ from smash.gadget.drawing.pebbles import draw_motion, step_captions, strip_layer
 from smash.gadget.drawing.piles import draw_instance
 from smash.gadget.drawing.style import RADIUS
 from smash.gadget.encode import encode
-from smash.problem import OnGoal, Pick, Place, PositionsGoal, SmashError, Topple, make_instance
+from smash.problem import Carrier, Carry, Lift, OnGoal, Pick, Place, PositionsGoal, SmashError, Topple, make_instance
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 MAGIC = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml", ".gif": b"GIF8"}
@@ -55,6 +55,29 @@ def test_odd_names_are_drawn(tmp_path, odd):
     plan = [Topple("s 1", 2), Pick("a\nb", "table"), Place("a\nb", "$s$")]
     draw_motion(encode(odd, plan), odd, tmp_path / "plan.svg")
     assert "$x_2$"[:3] in (tmp_path / "instance.svg").read_text(encoding="utf-8")
+
+
+def test_carriers_and_lifts_are_drawn(tmp_path):
+    instance = make_instance(
+        name="small",
+        blocks=["a", "b", "c"],
+        stacks=["s1", "s2"],
+        start={"s1": ["a", "b", "c"]},
+        goal=OnGoal({}),
+        carriers=[Carrier("tray", ("left", "right"), "left", 2)],
+        capacities={"lift": 2},
+    )
+    plan = [Pick("c", "s1"), Place("c", "tray"), Carry("tray", "right"), Lift("s1", 1, "s2")]
+    draw_gadget(gadget_of(instance), tmp_path / "gadget.png")
+    motion = encode(instance, plan)
+    draw_motion(motion, instance, tmp_path / "plan.svg")
+    places = lay_out(motion.gadget).nodes
+    assert len(set(places)) == len(places)
+    assert [caption for caption in step_captions(motion, instance) if caption] == [
+        "c: s1 → tray",
+        "carry tray to right",
+        "lift s1 from height 1 to s2",
+    ]
 
 
 def test_an_instance_without_blocks_is_drawn(tmp_path):

@@ -1,11 +1,13 @@
 """The gadgets: counts against the paper's printed definitions, and what is corrected."""
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from smash.gadget import EdgeKind, NodeKind, gadget_of, pick_and_place_gadget, smash_gadget
-from smash.problem import PlanOptions, StacksGoal, make_instance
+from smash.problem import Carrier, Costs, PlanOptions, StacksGoal, make_instance
 
 SIZES = given(stacks=st.integers(1, 7), blocks=st.integers(1, 9))
 
@@ -103,3 +105,53 @@ def test_without_topple_blocks_on_the_table_keep_their_region():
     )
     nodes, edges = gadget_of(instance, PlanOptions(topple=False)).counts()
     assert (nodes[NodeKind.TABLE], nodes[NodeKind.TOPPLE], edges[EdgeKind.RETURN]) == (1, 0, 1)
+
+
+@pytest.fixture
+def combined():
+    """Return an instance with a tray for two, lifts of two, and costs."""
+    return make_instance(
+        name="x",
+        blocks=["a", "b", "c"],
+        stacks=["s1", "s2"],
+        start={"s1": ["a", "b", "c"]},
+        goal=StacksGoal({"s1": ["a", "b", "c"]}),
+        carriers=[Carrier("tray", ("left", "right"), "left", 2)],
+        capacities={"lift": 2},
+        costs=Costs({"pick": 3, "place": 4, "topple": 5, "carry": 6, "lift": 8}),
+    )
+
+
+def test_each_action_is_a_part_whose_costs_are_the_instances(combined):
+    gadget = gadget_of(combined)
+    assert list(gadget.parts) == ["topple", "carry", "lift"]
+    assert {(aggregate.part, aggregate.cost) for aggregate in gadget.aggregates} == {
+        ("topple", 5),
+        ("carry", 6),
+        ("lift", 8),
+    }
+    assert {edge.cost for edge in gadget.edges if edge.kind.picks} == {7}
+
+
+def test_aggregates_gather_in_three_ways(combined):
+    gadget = gadget_of(combined)
+    ways = {
+        aggregate.part: (aggregate.locks is not None, aggregate.token is not None, len(aggregate.edges))
+        for aggregate in gadget.aggregates
+    }
+    assert ways == {"topple": (True, False, 1), "carry": (False, True, 1), "lift": (False, False, 2)}
+
+
+def test_what_is_not_allowed_is_no_part_of_the_gadget(combined):
+    gadget = gadget_of(combined, PlanOptions(topple=False, without=("carry", "lift")))
+    assert (gadget.aggregates, gadget.tokens, dict(gadget.parts)) == ((), (), {})
+
+
+def test_travel_is_part_of_the_cost_of_every_way(combined):
+    places = {"s1": (0, 0), "s2": (3, 4), "table": (0, 1), "left": (0, 2), "right": (0, 4)}
+    gadget = gadget_of(replace(combined, costs=Costs(travel=10.0, positions=places)))
+    assert gadget.edges[gadget.edge(gadget.top("s1"), gadget.top("s2"))].cost == 2 + 50
+    assert gadget.edges[gadget.edge(gadget.top("s1"), gadget.tokens[0].nodes["right"])].cost == 2 + 40
+    assert gadget.aggregates[gadget.aggregate("carry", ("tray", "left", "right"))].cost == 1 + 20
+    assert gadget.aggregates[gadget.aggregate("lift", ("s1", "s2"))].cost == 1 + 50
+    assert gadget.aggregates[gadget.aggregate("topple", ("s1",))].cost == 1
