@@ -31,6 +31,14 @@ def run(tower_file):
     return call
 
 
+def runs(process):
+    """Whether a process is there still, and no zombie."""
+    try:
+        return process.status() != psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return False
+
+
 def marked(mark):
     """Processes that carry this value of MARKED in their environment."""
     found = []
@@ -48,7 +56,7 @@ def alive(monkeypatch, tmp_path):
     monkeypatch.setenv("MARKED", mark)
 
     def count():
-        return [p for p in marked(mark) if p.pid != os.getpid() and p.status() != psutil.STATUS_ZOMBIE]
+        return [p for p in marked(mark) if p.pid != os.getpid() and runs(p)]
 
     return count
 
