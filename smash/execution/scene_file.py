@@ -6,7 +6,6 @@ A file that says `base = "default"` has from the default scene what it does not 
 from __future__ import annotations
 
 import os
-import tomllib
 from dataclasses import replace
 from functools import cache
 from math import hypot, radians
@@ -18,7 +17,7 @@ import msgspec
 from smash.execution.tabletop import DIRECTIONS, Friction, Slot, Tabletop
 from smash.execution.tray import Tray
 from smash.problem.errors import MalformedFile
-from smash.problem.files import check_format, convert, parse_json, read_bytes
+from smash.problem.files import check_format, convert, parse_json, parse_toml, read_bytes
 
 SCENE_FORMAT = "smash-scene/1"
 DEFAULT_SCENE = Path(__file__).parent / "scenes" / "default.toml"
@@ -124,14 +123,7 @@ def scene_from_document(document: Any, where: str = "scene") -> Tabletop:
 
 
 def _parse(content: bytes, where: str) -> Any:
-    if not where.endswith(".toml"):
-        return parse_json(content, where)
-    try:
-        return tomllib.loads(content.decode("utf-8"))
-    except UnicodeDecodeError:
-        raise MalformedFile(where, "not UTF-8 text") from None
-    except tomllib.TOMLDecodeError as error:
-        raise MalformedFile(where, f"not TOML: {error}") from None
+    return parse_toml(content, where) if where.endswith(".toml") else parse_json(content, where)
 
 
 def _refuse_overlap(table: Tabletop, where: str) -> None:

@@ -11,7 +11,6 @@ import hashlib
 import json
 import os
 import re
-import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -24,7 +23,7 @@ from smash.planners.protocol import MOST_THREADS, SolveOptions
 from smash.planners.registry import get_planner, why_unknown
 from smash.problem.errors import MalformedFile, Unsupported
 from smash.problem.family import FAMILY
-from smash.problem.files import convert, instance_document, read_bytes
+from smash.problem.files import convert, instance_document, parse_toml, read_bytes
 from smash.problem.model import Instance, PlanOptions
 from smash.problem.suites import read_suite, suite_names, with_buffers
 
@@ -99,11 +98,7 @@ def read_experiment(path: str | os.PathLike[str]) -> Experiment:
         MalformedFile: with one line that says where and what is allowed.
     """
     where = os.fspath(path)
-    try:
-        document = tomllib.loads(read_bytes(path).decode())
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise MalformedFile(where, f"not TOML: {error}") from None
-    experiment = cast(Experiment, convert(document, Experiment, where))
+    experiment = cast(Experiment, convert(parse_toml(read_bytes(path), where), Experiment, where))
     check_experiment(experiment, where)
     return experiment
 

@@ -11,7 +11,6 @@ import os
 import re
 import shlex
 import sys
-import tomllib
 from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -23,7 +22,7 @@ import smash
 from smash.experiments.environment import versions
 from smash.planners.registry import DEFAULT
 from smash.problem.errors import MalformedFile
-from smash.problem.files import convert, read_bytes
+from smash.problem.files import convert, parse_toml, read_bytes
 
 PROGRAMS = {"smash": (sys.executable, "-m", "smash"), "python": (sys.executable,)}
 PACKAGES = ("coal", "matplotlib", "ompl", "pandas", "pin", "pybullet", "toppra")
@@ -108,11 +107,7 @@ def read_steps(path: Path) -> Steps:
         MalformedFile: with one line that says where and what is allowed.
     """
     where = os.fspath(path)
-    try:
-        document = tomllib.loads(read_bytes(path).decode())
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise MalformedFile(where, f"not TOML: {error}") from None
-    steps = cast(Steps, convert(document, Steps, where))
+    steps = cast(Steps, convert(parse_toml(read_bytes(path), where), Steps, where))
     _check(steps, where)
     return steps
 

@@ -139,6 +139,22 @@ def parse_json(text: str | bytes, where: str) -> Any:
         raise MalformedFile(where, f"not JSON: {error}") from None
 
 
+def parse_toml(content: bytes, where: str) -> dict[str, Any]:
+    """Parse one TOML document.
+
+    Raises:
+        MalformedFile: where the content is no TOML.
+    """
+    import tomllib  # planning reads none: not worth its import at every start
+
+    try:
+        return tomllib.loads(content.decode())
+    except UnicodeDecodeError:
+        raise MalformedFile(where, "not UTF-8 text") from None
+    except tomllib.TOMLDecodeError as error:
+        raise MalformedFile(where, f"not TOML: {error}") from None
+
+
 def read_bytes(path: str | os.PathLike[str]) -> bytes:
     """Return the content of a file.
 
