@@ -6,7 +6,8 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from itertools import permutations
 
-from smash.gadget.graph import Aggregate, EdgeKind, GadgetBuilder, NodeKind, Token
+from smash.gadget.builder import GadgetBuilder
+from smash.gadget.elements import Aggregate, EdgeKind, NodeKind, Token
 from smash.problem.aggregating import allowed
 from smash.problem.carry import Carry, CarryKind
 from smash.problem.model import Aggregating, Carrier, Instance, PlanOptions, State

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from smash.gadget import carry, lift, topple
-from smash.gadget.parts import AggregatingPart
+from smash.gadget.builder import AggregatingPart
 from smash.problem.model import Instance, PlanOptions
 
 PARTS: tuple[Callable[[Instance, PlanOptions], AggregatingPart | None], ...] = (

@@ -6,7 +6,8 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from itertools import permutations
 
-from smash.gadget.graph import Aggregate, EdgeKind, GadgetBuilder, NodeKind
+from smash.gadget.builder import GadgetBuilder
+from smash.gadget.elements import Aggregate, EdgeKind, NodeKind
 from smash.problem.aggregating import allowed
 from smash.problem.lift import Lift, LiftKind
 from smash.problem.model import Aggregating, Instance, PlanOptions, State

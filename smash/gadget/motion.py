@@ -12,7 +12,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from smash.gadget.graph import EdgeKind, Gadget, NodeKind
+from smash.gadget.elements import EdgeKind, NodeKind
+from smash.gadget.graph import Gadget
 from smash.problem.model import State
 
 

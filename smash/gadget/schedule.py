@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from smash.gadget.graph import Aggregate, Gadget, NodeKind
+from smash.gadget.elements import Aggregate, NodeKind
+from smash.gadget.graph import Gadget
 from smash.gadget.motion import settled
 from smash.problem.errors import IllegalAction
 from smash.problem.family import kind_of

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from smash.gadget.graph import Aggregate, EdgeKind, GadgetBuilder, NodeKind
+from smash.gadget.builder import GadgetBuilder
+from smash.gadget.elements import Aggregate, EdgeKind, NodeKind
 from smash.problem.aggregating import allowed
 from smash.problem.model import TABLE, Aggregating, Instance, PlanOptions, State
 from smash.problem.topple import Topple, ToppleKind

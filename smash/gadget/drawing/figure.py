@@ -23,7 +23,8 @@ from smash.gadget.drawing.style import (
     save,
     short,
 )
-from smash.gadget.graph import EdgeKind, Gadget, Node, NodeKind
+from smash.gadget.elements import EdgeKind, Node, NodeKind
+from smash.gadget.graph import Gadget
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

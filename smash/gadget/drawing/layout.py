@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from smash.gadget.graph import Gadget, NodeKind
+from smash.gadget.elements import NodeKind
+from smash.gadget.graph import Gadget
 
 Point = tuple[float, float]
 

@@ -23,7 +23,7 @@ from smash.gadget.drawing.style import (
     save,
     short,
 )
-from smash.gadget.graph import NodeKind
+from smash.gadget.elements import NodeKind
 from smash.gadget.motion import PebbleMotion
 from smash.problem.errors import MalformedFile
 from smash.problem.model import Action, Instance, Pick, Place, State

@@ -67,7 +67,7 @@ class LayeredPlanner(BasePlanner):
         if not plain:
             from smash.planners.layered.family.solve import FamilySolve
 
-            return FamilySolve(instance, options, budget, log).run()
+            return FamilySolve(instance, options, budget, log, self.solve).run()
         return _Solve(instance, options, budget, log).run()
 
     def build_model(self, instance: Instance, options: SolveOptions) -> Milp:

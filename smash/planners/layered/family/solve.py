@@ -13,7 +13,7 @@ from smash.planners.demands import Demands, demands_of
 from smash.planners.layered.family.moving import Moving
 from smash.planners.layered.family.places import Places
 from smash.planners.layered.family.unordered import Unordered
-from smash.planners.protocol import IncumbentLog, PlanResult, SolveOptions
+from smash.planners.protocol import IncumbentLog, OnIncumbent, PlanResult, SolveOptions
 from smash.problem.model import Action, Instance
 
 if TYPE_CHECKING:
@@ -73,14 +73,28 @@ class _Built(Protocol):
 
 Model = TypeVar("Model", bound=_Built)
 
+Solve = Callable[[Instance, SolveOptions, float, OnIncumbent | None], PlanResult]
+"""The `solve` of a planner."""
+
 
 class FamilySolve:
-    """Stages, one after the other, until the bound meets the best plan or the budget is spent."""
+    """Stages, one after the other, until the bound meets the best plan or the budget is spent.
 
-    def __init__(self, instance: Instance, options: SolveOptions, budget: float, log: IncumbentLog) -> None:
+    Args:
+        instance: the problem.
+        options: what plans may use, and the solver's settings.
+        budget: seconds of wall time.
+        log: takes plans and bounds.
+        plain: plans instances of pick, place and topple alone: its plans of the plain twin come first.
+    """
+
+    def __init__(
+        self, instance: Instance, options: SolveOptions, budget: float, log: IncumbentLog, plain: Solve
+    ) -> None:
         self.instance = instance
         self.options = options
         self.log = log
+        self._plain = plain
         self.deadline = perf_counter() + budget - min(SPARE_SECONDS, budget / 10) - log.elapsed
         self.demands = demands_of(instance)
         moving = Moving.of(instance, self.demands, options)
@@ -126,13 +140,12 @@ class FamilySolve:
     def _twin(self) -> None:
         """Take first plans from the three-node model of the plain twin, for a share of the time left."""
         from smash.planners.family.twin import from_twin, plain_twin
-        from smash.planners.layered.planner import LayeredPlanner
 
         def found(_seconds: float, _cost: int, actions: Sequence[Action]) -> None:
             self.log.offer(tuple(from_twin(self.instance, actions)), "milp")
 
         options = replace(self.options, warm_start=None, horizon=None)
-        LayeredPlanner().solve(plain_twin(self.instance), options, TWIN_SHARE * (self.deadline - perf_counter()), found)
+        self._plain(plain_twin(self.instance), options, TWIN_SHARE * (self.deadline - perf_counter()), found)
 
     def _relaxations(self) -> None:
         """Solve the relaxation at a short horizon, for plans, then at one that holds all cheaper ones, for the bound.
