@@ -81,6 +81,10 @@ class AggregateMotion(ABC, Generic[A]):
     def places(self, action: A) -> tuple[str, ...]:
         """Return the places where a loose block would be in the action's way."""
 
+    def motions(self, action: A, state: State) -> int:
+        """Return how many motions the action is meant to take from the law's state before it."""
+        return 1
+
     def unfinished(self, action: A, state: State) -> bool:
         """Return whether the state after the motion asks for another one of the same action."""
         return False

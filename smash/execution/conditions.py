@@ -2,11 +2,11 @@
 
 *Object non-interactivity of stack locations*: whatever stands elsewhere, the top of a pile can be picked. Checked by
 the hand's room: arm and open gripper, at each slot and several heights, must keep clear of full piles on all other
-slots, in one of the four yaws, and the arm must reach slot and height from above.
+slots and of trays at all stations, in one of the four yaws, and the arm must reach slot and height from above.
 
 *Monotone transformation non-interactivity*: toppled blocks can be picked in any order, and they lie in a region
-disjoint from the stack locations. Checked by the landing strips: no slot lies in one, and the arm reaches them. That
-toppled blocks leave each other room is a matter of physics: `smash topple-map` measures it.
+disjoint from the stack locations. Checked by the landing strips: no slot and no station lies in one, and the arm
+reaches them. That toppled blocks leave each other room is a matter of physics: `smash topple-map` measures it.
 """
 
 from __future__ import annotations
@@ -74,6 +74,9 @@ def _interactive(tabletop: Tabletop, named: dict[str, Slot], name: str, full: di
         side / 2,
         np.array([pose.rotation for pose in poses]).reshape(-1, 3, 3),
     )
+    for index, station in enumerate(tabletop.stations):
+        assert tabletop.tray is not None
+        scene = scene.joined(tabletop.tray.scene(f"stations[{index}]", tabletop.tray_at(station)))
     hand = HandState(min(MAX_OPENING, side / 2 + OPENINGS[-1]))
     checker = CollisionChecker(scene, hand, CONTACT_MARGIN)
     for level in sorted({1, (height + 1) // 2, height}):
@@ -86,24 +89,32 @@ def _interactive(tabletop: Tabletop, named: dict[str, Slot], name: str, full: di
         if not solutions:
             return [Violation(condition, name, f"the hand does not reach height {level} from above")]
         if not any(checker.free(joints) for joints in solutions):
-            blocked = ", ".join(_nearest(named, name))
-            return [Violation(condition, name, f"full piles at {blocked} leave no room for the hand at height {level}")]
+            blocked = ", ".join(_nearest(tabletop, named, name))
+            problem = f"what stands at {blocked} leaves no room for the hand at height {level}"
+            return [Violation(condition, name, problem)]
     return []
 
 
-def _nearest(named: dict[str, Slot], name: str) -> list[str]:
-    slot = named[name]
-    others = sorted((other.distance(slot.x, slot.y), key) for key, other in named.items() if key != name)
+def _nearest(tabletop: Tabletop, named: dict[str, Slot], name: str) -> list[str]:
+    slot, all_named = named[name], named | _stations(tabletop)
+    others = sorted((other.distance(slot.x, slot.y), key) for key, other in all_named.items() if key != name)
     return [key for _, key in others[:2]]
+
+
+def _stations(tabletop: Tabletop) -> dict[str, Slot]:
+    return {f"stations[{index}]": slot for index, slot in enumerate(tabletop.stations)}
 
 
 def _strip_problems(tabletop: Tabletop, named: dict[str, Slot], name: str, direction: str) -> list[Violation]:
     condition, slot, side = "monotone transformation", named[name], tabletop.side
     found = []
     area = strip(FALLING)
-    for key, other in named.items():
+    tray = 0.0 if tabletop.tray is None else min(tabletop.tray.size) / 2
+    rooms = {key: (other, side / 2) for key, other in named.items() if key != name}
+    rooms |= {key: (station, tray) for key, station in _stations(tabletop).items()}
+    for key, (other, half) in rooms.items():
         along, aside = slot.coordinates(other.x, other.y, direction)
-        if key != name and 0 < along < area.length + side / 2 and abs(aside) < area.half_width + side / 2:
+        if 0 < along < area.length + half and abs(aside) < area.half_width + half:
             found.append(Violation(condition, name, f"{key} lies in the strip of a {direction} topple"))
     for along in np.linspace(2 * side, area.length, STRIP_SAMPLES):
         x, y = slot.point(float(along), 0.0, direction)

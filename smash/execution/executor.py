@@ -79,6 +79,7 @@ class Executor:
         self.steps = Steps(tabletop, seed)
         self.grounder = Grounder(self.steps)
         self.performed: list[Performed] = []
+        self.failed_at: Performed | None = None
         self.replans = 0
         self.task_seconds = 0.0
         self._gui = gui
@@ -100,20 +101,26 @@ class Executor:
 
     def _run_plan(self) -> ExecutionFailure | None:
         """Plan, execute, judge, and begin anew from what is observed as long as the policy allows it."""
-        actions = self.plan.actions or ()
         origin: Origin = "plan"
-        tasks = self._ground(actions)
+        failure = self._start_shortfall()
+        tasks = self._ground(self.plan.actions or ()) if failure is None else []
         self.offline = sum(task.seconds for task in tasks)
         self.offline_cpu = sum(task.cpu_seconds for task in tasks)
         while True:
-            failure = self._carry_out(tasks, origin) or self._judge()
+            failure = failure or self._carry_out(tasks, origin) or self._judge()
+            self.failed_at = self.performed[-1] if self.performed else None
             if failure is None or self.replanner is None or self.replans >= self.policy.replans:
                 return failure
             self.replans += 1
-            again = self._plan_anew(failure)
+            again = self._plan_anew()
             if again is None:
                 return failure
-            tasks, origin = again, "replan"
+            tasks, origin, failure = again, "replan", None
+
+    def _start_shortfall(self) -> ExecutionFailure | None:
+        """Whether the piles stand that the instance starts with."""
+        start, observed = State.start_of(self.instance), self.performer.observe()
+        return None if observed.key() == start.key() else Fell(f"at the start, {_difference(start, observed)}")
 
     def _ground(self, actions: Sequence[Action]) -> list[Task]:
         return self.grounder.ground(actions, self.performer.observe(), self.performer.look(), self.world.commanded())
@@ -130,8 +137,14 @@ class Executor:
                 return failure
         return None
 
-    def _perform(self, task: Task, origin: Origin, expected: State, rest: Sequence[Action]) -> None:
+    def _perform(self, task: Task, origin: Origin, expected: State, rest: Sequence[Action] | None) -> None:
         """Perform one action, move `expected` on to what is observed, and record it.
+
+        Args:
+            task: The action and what is planned of it.
+            origin: Who asked for it.
+            expected: The law's state before it.
+            rest: What the plan goes on with, or None where a new plan comes anyway.
 
         Raises:
             ExecutionFailure: where the action, or the rest of the plan after it, cannot be done.
@@ -148,7 +161,8 @@ class Executor:
             self.performer.perform(task, row, expected)
             observed = self.performer.observe()
             self.law.apply(expected, task.action)
-            if observed.key() != expected.key() and not self._still_good(observed, rest):
+            observed.origin = expected.origin
+            if rest is not None and observed.key() != expected.key() and not self._still_good(observed, rest):
                 raise Fell(_difference(expected, observed))
             expected.piles, expected.table, expected.hand = observed.piles, observed.table, observed.hand
             expected.carried, expected.stations = observed.carried, observed.stations
@@ -162,7 +176,7 @@ class Executor:
             row.times.execution = self.world.time - begun
 
     def _recover(self, action: Action) -> None:
-        self._perform(Task(action, None), "recovery", self.performer.observe(), ())
+        self._perform(Task(action, None), "recovery", self.performer.observe(), None)
 
     def _still_good(self, state: State, rest: Sequence[Action]) -> bool:
         """Whether the rest of the plan reaches the goal from `state` too."""
@@ -185,21 +199,24 @@ class Executor:
             self.world.settle()
         return None
 
-    def _plan_anew(self, failure: ExecutionFailure) -> list[Task] | None:
-        """Empty the hand, clear what was in the way, and ask for a plan from the observed state."""
+    def _plan_anew(self) -> list[Task] | None:
+        """Empty the hand, clear what was in the way, and ask for a plan from the observed state; None without one."""
         self.world.settle()
-        last = self.performed[-1] if self.performed else None
+        last = self.failed_at
         if self.performer.hand is not None and not self.recovery.put_down():
             return None
         if last is not None and last.outcome in ("no motion", "slip", "IK", "out of reach"):
             self.recovery.clear(action_from_list(list(last.action), "episode"))
         state = self.performer.observe()
-        if NOWHERE in state.stations.values():
+        if self.performer.hand is not None or NOWHERE in state.stations.values():
             return None
+        remaining = observed_instance(self.instance, state)
         begun = perf_counter()
-        actions = self._ask(observed_instance(self.instance, state))
+        actions = self._ask(remaining)
         self.task_seconds += perf_counter() - begun
-        return None if actions is None else self._ground(actions)
+        if actions is None or not Law(remaining, self.plan.options).check(actions).accepted:
+            return None
+        return self._ground(actions)
 
     def _ask(self, instance: Instance) -> Sequence[Action] | None:
         """A plan for what is observed, without topples where they keep failing."""
@@ -213,7 +230,7 @@ class Executor:
 
     def _episode(self, failure: ExecutionFailure | None, final: State) -> Episode:
         rows = self.performed
-        last = rows[-1] if rows else None
+        last = self.failed_at
         return Episode(
             instance=self.instance.name,
             planner=self.plan.planner,

@@ -18,7 +18,7 @@ from smash.execution.family import MOTIONS
 from smash.execution.grounding import Grounder, Task
 from smash.execution.policy import Policy
 from smash.execution.readback import read_state
-from smash.execution.steps import OPEN_SECONDS, OPENINGS, Grip, Move, Segment
+from smash.execution.steps import OPEN_SECONDS, OPENINGS, Approach, Grip, Move, Segment
 from smash.execution.stopwatch import Stopwatch
 from smash.execution.world import World
 from smash.problem.model import TABLE, Aggregating, Pick, Place, State
@@ -30,7 +30,7 @@ MOVED = 0.004
 SCENE_ALLOWANCE = 0.006
 """Motions planned offline may come this much closer to revealed blocks than planned [m]."""
 MOST_MOTIONS = 5
-"""An aggregating action that is not done after so many motions (a topple with blocks above its cut) has failed."""
+"""An aggregating action is not repeated more often than this: what it leaves undone then, the law's state tells."""
 PAUSE = 0.05
 """Standing still between two motions, for the arm to catch up [s]."""
 
@@ -67,7 +67,7 @@ class Performer:
         return self.table.seen(self.world.poses(), self.world.carriers())
 
     def perform(self, task: Task, row: Performed, state: State) -> None:
-        """Perform an action, a pick several times where it fails.
+        """Perform an action, a pick several times where the block slips.
 
         Args:
             task: The action and what is planned of it.
@@ -83,7 +83,7 @@ class Performer:
             try:
                 self._try(task if attempt == 1 else Task(task.action, None), row, state)
                 return
-            except ExecutionFailure:
+            except Slip:
                 if attempt == tries:
                     raise
                 self.retries += 1
@@ -109,12 +109,17 @@ class Performer:
                 self._aggregate(task.action, segments, row)
 
     def _aggregate(self, action: Aggregating, segments: Sequence[Segment], row: Performed) -> None:
-        """Perform, look, and go on as long as the action is not done: many blocks fall in several pushes."""
-        for last in (*[False] * (MOST_MOTIONS - 1), True):
+        """Perform, look, and go on as long as the action is not done: many blocks fall in several pushes.
+
+        The open pipeline makes as many motions as the action was meant to take, and no more.
+        """
+        motion = MOTIONS[type(action)]
+        most = MOST_MOTIONS if self.policy.repair else motion.motions(action, self.observe())
+        for number in range(1, most + 1):
             carry_out(self.world, segments)
             self.world.settle()
             state = self.observe()
-            if last or not MOTIONS[type(action)].unfinished(action, state):
+            if number == most or not motion.unfinished(action, state):
                 return
             segments = self._planned(Task(action, None), state, row)
 
@@ -131,18 +136,32 @@ class Performer:
     def _plan_online(self, task: Task, state: State) -> list[Segment]:
         """Plan an action from the observed scene and the arm's present state."""
         where, joints = self.look(), self.world.commanded()
-        try:
+        problem: ExecutionFailure | None = None
+        for approach in self._ways_down(task, where):
             try:
-                again = self.grounder.task(task.action, state, where, joints, task.approach)
-            except ExecutionFailure:
-                if task.approach is None:
-                    raise
-                again = self.grounder.task(task.action, state, where, joints)
-        except NoIk as problem:
-            if isinstance(task.action, Pick) and task.action.source == TABLE:
-                raise OutOfReach(f"block {task.action.block!r}: {problem}") from None
-            raise
-        return again.segments or []
+                return self.grounder.task(task.action, state, where, joints, approach).segments or []
+            except ExecutionFailure as failure:
+                problem = problem or failure
+        assert problem is not None
+        if isinstance(problem, NoIk) and isinstance(task.action, Pick) and task.action.source == TABLE:
+            raise OutOfReach(f"block {task.action.block!r}: {problem}") from None
+        raise problem
+
+    def _ways_down(self, task: Task, where: Geometry) -> list[Approach | None]:
+        """The promised way down of a place where it is free, and None for a new one; the best first.
+
+        The open pipeline takes the promised one without looking.
+        """
+        promised = task.approach
+        if promised is None:
+            return [None]
+        if not self.policy.repair or not isinstance(task.action, Place):
+            return [promised, None]
+        steps, block = self.grounder.steps, task.action.block
+        scene = steps.scene(where.blocks, where.carriers)
+        if steps.still_free(promised, block, scene):
+            return [promised, None]
+        return [None, promised] if steps.still_free(promised, block, scene, SCENE_ALLOWANCE) else [None]
 
     def _usable(self, task: Task, state: State) -> bool:
         """Whether a motion planned earlier starts where the arm is, and fits the scene (if the policy looks at it)."""

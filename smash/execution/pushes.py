@@ -79,6 +79,15 @@ def first_cut(height: int, top: int) -> int:
     return top - ceil(falling / pushes) + 1
 
 
+def pushes_needed(height: int, top: int) -> int:
+    """How many pushes a pile of `top` blocks takes that shall be cut at `height`, if each does what it should."""
+    count = 0
+    while top >= height:
+        top = first_cut(height, top) - 1
+        count += 1
+    return count
+
+
 def manner(height: int, falling: int) -> Manner:
     """How to topple so many blocks from this height on; measured, see `smash topple-map`."""
     if height == 1:
@@ -180,6 +189,10 @@ class ToppleMotion(AggregateMotion[Topple]):
         """Forget the poses of what falls."""
         for block in state.piles[action.location][action.height - 1 :]:
             where.blocks.pop(block, None)
+
+    def motions(self, action: Topple, state: State) -> int:
+        """Return the number of pushes."""
+        return pushes_needed(action.height, len(state.piles[action.location]))
 
     def unfinished(self, action: Topple, state: State) -> bool:
         """Whether blocks still stand above the cut."""

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import pi
 
 from smash.execution.aggregate_motion import Geometry
-from smash.execution.block_pose import BlockPose, quarter_turn
+from smash.execution.block_pose import BlockPose
 from smash.execution.tabletop import Slot, Tabletop
 from smash.execution.tray import heading
 from smash.problem.model import State
@@ -65,7 +66,8 @@ def _station(pose: BlockPose, stations: Mapping[str, Slot], tabletop: Tabletop) 
     if pose.tilt > LARGEST_TILT or abs(pose.position[2]) > tabletop.side / 2:
         return NOWHERE
     for station, slot in stations.items():
-        turned = abs(quarter_turn(heading(pose) - slot.angle))
+        # Its length lies across the bearing; which of its ends is which does not matter.
+        turned = abs((heading(pose) - slot.angle) % pi - pi / 2)
         if pose.distance(slot.x, slot.y) < TRAY_WITHIN and turned < LARGEST_TURN:
             return station
     return NOWHERE

@@ -65,14 +65,17 @@ class Recovery:
             self._uncover(action.block, *points[0])
 
     def _uncover(self, block: str, x: float, y: float) -> None:
-        """Take down the pile beside a loose block, one by one, until the block itself can be set aside."""
+        """Take down the pile beside a loose block, one by one, until the block itself can be set aside.
+
+        It ends where a block cannot be put down again: the hand is full then.
+        """
         near = [name for name, slot in self.performer.table.slots.items() if slot.distance(x, y) < NEAR]
         for location in sorted(near, key=lambda name: self.performer.table.slots[name].distance(x, y)):
             for _ in range(len(self.performer.observe().piles[location])):
                 pile = self.performer.observe().piles[location]
                 if not pile or not self._set_aside(pile[-1], location):
                     break
-                if self._set_aside(block, TABLE):
+                if self.performer.hand is not None or self._set_aside(block, TABLE):
                     return
 
     def _set_aside(self, block: str, source: str) -> bool:

@@ -176,6 +176,19 @@ class Steps:
         x, y, z = (float(value) for value in target.position)
         raise NoMotion(f"no room for the hand to put a block down at x {x:.2f}, y {y:.2f}, z {z:.2f} m")
 
+    def still_free(self, approach: Approach, block: str, scene: Scene, allowance: float = 0.0) -> bool:
+        """Whether a way down that was planned earlier is free in another scene, with the block and without it.
+
+        Args:
+            approach: The way.
+            block: What is put down.
+            scene: Where everything is now.
+            allowance: How much closer than planned it may come [m].
+        """
+        near, waypoints = scene.without([block]), approach.line.waypoints
+        hands = (self.holding, HandState(approach.opening))
+        return all(CollisionChecker(near, hand, CONTACT_MARGIN - allowance).path_free(waypoints) for hand in hands)
+
     def place(self, start: Vector, block: str, approach: Approach, scene: Scene) -> list[Segment]:
         """From `start` [rad] with the block to above the place, down, open, and up again.
 
@@ -253,22 +266,20 @@ class Steps:
             if any(entry[0] <= -ENOUGH_CLEARANCE for entry in ranked):
                 break
         ranked.sort(key=lambda entry: entry[:3])
-        for height in HOVERS:
-            for _, negative, _, clearance, joints in ranked:
-                leaving = HandState(-negative)
-                going = self.holding if carrying else leaving
-                line = self._line_down(joints, height, near, going, leaving)
-                if line is not None:
-                    yield Approach(line, -negative, clearance)
+        # A block that leans on the one to be picked is shaken off in the last resort alone.
+        for loaded in (True,) if carrying else (True, False):
+            for height in HOVERS:
+                for _, negative, _, clearance, joints in ranked:
+                    line = self._line_down(joints, height, near, HandState(-negative), loaded)
+                    if line is not None:
+                        yield Approach(line, -negative, clearance)
 
-    def _line_down(
-        self, joints: Vector, height: float, near: Scene, going: HandState, leaving: HandState
-    ) -> Path | None:
-        """The straight way down that the hand can take as it comes and as it leaves, or None."""
+    def _line_down(self, joints: Vector, height: float, near: Scene, empty: HandState, loaded: bool) -> Path | None:
+        """The straight way down that the open hand can take, and with a block too where it is `loaded`; or None."""
         try:
-            up = self.motion.line(joints, (0.0, 0.0, height), near, hand=going)
-            if going is not leaving:
-                self.motion.line(joints, (0.0, 0.0, height), near, hand=leaving)
+            up = self.motion.line(joints, (0.0, 0.0, height), near, hand=empty)
+            if loaded:
+                self.motion.line(joints, (0.0, 0.0, height), near, hand=self.holding)
         except ExecutionFailure:
             return None
         return up.reversed()

@@ -99,6 +99,14 @@ def test_what_a_carry_leaves_is_known_before():
     assert state.carried == {"tray": {"a", "c"}}
 
 
+@pytest.mark.parametrize(("turn", "stands"), [(0.0, True), (pi, True), (pi / 2, False), (0.3, False)])
+def test_a_tray_stands_at_a_station_along_it_whichever_end_is_which(turn, stands):
+    scene, where = scoop_scene(), laid_out(loaded(), scoop_scene())
+    station = where.stations["left"]
+    where.carriers["tray"] = scene.tray.at(station.x, station.y, station.angle + pi / 2 + turn)
+    assert read_state(where, scene).stations == {"tray": "left" if stands else NOWHERE}
+
+
 def test_a_tray_off_its_stations_is_nowhere():
     scene, instance = scoop_scene(), loaded()
     where = laid_out(instance, scene)

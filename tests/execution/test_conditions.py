@@ -7,6 +7,7 @@ from smash.execution.conditions import violations
 from smash.execution.draw_scene import draw
 from smash.execution.scene_file import default_scene
 from smash.execution.tabletop import Slot
+from smash.execution.tray import Tray
 
 
 def scene(*stacks, buffers=()):
@@ -40,7 +41,17 @@ def test_a_stack_out_of_reach_breaks_the_first_condition():
 def test_high_piles_close_by_break_the_first_condition():
     close = [Slot(0.45, radians(angle)) for angle in (-9, 9)]
     found = violations(scene(stack(angle=120), buffers=(Slot(0.45, 0.0), *close)), buffer_height=9)
-    assert any("leave no room" in problem.problem for problem in found)
+    assert any("leaves no room" in problem.problem for problem in found)
+
+
+def test_a_tray_in_a_landing_strip_breaks_the_second_condition():
+    with_tray = dataclasses.replace(scene(stack()), tray=Tray(0.045), stations=(Slot(0.45, radians(30)),))
+    assert any("stations[0] lies in the strip" in problem.problem for problem in violations(with_tray, height=3))
+
+
+def test_a_tray_that_takes_the_hand_s_room_breaks_the_first_condition():
+    with_tray = dataclasses.replace(scene(stack()), tray=Tray(0.045), stations=(Slot(0.45, radians(-3)),))
+    assert any("stations[0]" in problem.problem for problem in violations(with_tray, height=1))
 
 
 def test_a_scene_is_drawn(tmp_path):

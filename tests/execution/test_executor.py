@@ -109,6 +109,38 @@ def test_an_episode_is_written_as_json():
     assert document["success"] is False
 
 
+def test_an_illegal_new_plan_leaves_the_failure_as_it_was():
+    def replan(instance, options):
+        return [Pick("a", "s1"), Place("a", "s1")]
+
+    only_topple = plan_of("swapped", *swapped_plan().actions[:1])
+    episode = run(swapped_pair(), only_topple, replanner=replan)
+    assert episode.failure.name == "not at goal"
+    assert len(episode.actions) == 1
+
+
+def test_a_failure_names_the_action_that_failed_whatever_recovery_tried_afterwards():
+    slippery = dataclasses.replace(default_scene(), friction=Friction(0.45, 0.9, 0.01))
+    episode = run(swapped_pair(), swapped_plan(), scene=slippery, replanner=lambda instance, options: None)
+    failed = episode.actions[episode.failure.step - 1]
+    assert (failed.action, failed.outcome, failed.reason) == (
+        episode.failure.action,
+        episode.failure.name,
+        episode.failure.reason,
+    )
+    assert failed.attempts == 3
+    assert episode.retries >= 2
+
+
+def test_piles_that_do_not_stand_at_the_start_are_a_failure_before_any_step():
+    steep = dataclasses.replace(default_scene(), friction=Friction(0.001, 0.9, 1.0))
+    tower = make_instance(
+        name="tower", blocks="abcdefghi", stacks=["s1", "s2"], start={"s1": "abcdefghi"}, goal=PositionsGoal({})
+    )
+    episode = run(tower, plan_of("tower"), scene=steep)
+    assert (episode.failure.name, episode.failure.step, episode.actions) == ("fell", 0, [])
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("suite", ["single-9", "multi-4", "multi-6"])
 def test_committed_instances_succeed(suite):
