@@ -126,6 +126,7 @@ class MotionPlanner:
         scene: Scene,
         *,
         hand: HandState | None = None,
+        back: HandState | None = None,
         margin: float = CONTACT_MARGIN,
     ) -> Path:
         """Move the tool on a straight line, its orientation kept.
@@ -135,6 +136,7 @@ class MotionPlanner:
             displacement: From there, in the world [m], shape (3,).
             scene: What must not be touched.
             hand: Finger opening and carried block.
+            back: The same on the way back, where that is to be free too.
             margin: Distance to keep [m]; by default touching is allowed, as at the end of a placement.
 
         Raises:
@@ -148,10 +150,13 @@ class MotionPlanner:
         if rows is None:
             raise NoIk(f"the tool cannot follow the line by {_say(offset)} from where it is")
         waypoints = np.stack([np.asarray(start, dtype=np.float64), *rows])
-        checker = CollisionChecker(scene, held, margin)
-        if not checker.path_free(waypoints):
-            raise NoMotion(f"a line by {_say(offset)} is blocked by {_blocked_by(waypoints, checker)}")
-        contact = self._contact(waypoints, self._hulls(scene, held))
+        for state in (held,) if back is None else (held, back):
+            checker = CollisionChecker(scene, state, margin)
+            if not checker.path_free(waypoints):
+                raise NoMotion(f"a line by {_say(offset)} is blocked by {_blocked_by(waypoints, checker)}")
+        # Hand and fingers are boxes to both checkers: the hulls add what the arm does, which is the same both ways.
+        loaded = back if back is not None and back.attached is not None else held
+        contact = self._contact(waypoints, self._hulls(scene, loaded))
         if contact is not None:
             raise NoMotion(f"on a line by {_say(offset)}, {contact}")
         return Path(waypoints, "line")

@@ -277,12 +277,10 @@ class Steps:
     def _line_down(self, joints: Vector, height: float, near: Scene, empty: HandState, loaded: bool) -> Path | None:
         """The straight way down that the open hand can take, and with a block too where it is `loaded`; or None."""
         try:
-            up = self.motion.line(joints, (0.0, 0.0, height), near, hand=empty)
-            if loaded:
-                self.motion.line(joints, (0.0, 0.0, height), near, hand=self.holding)
+            back = self.holding if loaded else None
+            return self.motion.line(joints, (0.0, 0.0, height), near, hand=empty, back=back).reversed()
         except ExecutionFailure:
             return None
-        return up.reversed()
 
     def move(
         self,
