@@ -62,10 +62,10 @@ scoop: $(STAMP) ## the paper's scoop: pick and place alone, with topple, scoop, 
 friction: $(STAMP) ## the same plans under other friction, and topples by size (about 15 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/friction.toml --out runs/friction
 	$(BIN)/python -m smash episodes runs/friction --policy replan --policy open --jobs 2
-	$(BIN)/python -m smash topple-map --highest-cut 3 --seeds 3 --out runs/friction/default
+	$(BIN)/python -m smash topple-map --highest-cut 3 --out runs/friction/default
 	for scene in $(SCENES); do \
 	  $(BIN)/python -m smash episodes runs/friction --policy replan --policy open --jobs 2 --scene experiments/scenes/$$scene.toml && \
-	  $(BIN)/python -m smash topple-map --highest-cut 3 --seeds 3 --scene experiments/scenes/$$scene.toml --out runs/friction/$$scene \
+	  $(BIN)/python -m smash topple-map --highest-cut 3 --scene experiments/scenes/$$scene.toml --out runs/friction/$$scene \
 	    || exit 1; done
 	$(BIN)/python -m analysis.execution_sweeps runs/friction $(addprefix runs/friction/,default $(SCENES))
 

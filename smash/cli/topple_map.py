@@ -14,7 +14,14 @@ import click
 @click.option(
     "--most", type=click.IntRange(1, 9), default=6, show_default=True, metavar="M", help="1 to M blocks fall."
 )
-@click.option("--seeds", type=click.IntRange(min=1), default=2, show_default=True, metavar="N", help="Trials of each.")
+@click.option(
+    "--seeds",
+    type=click.IntRange(min=1),
+    default=4,
+    show_default=True,
+    metavar="N",
+    help="Trials of each, stack by stack.",
+)
 @click.option("--scene", type=click.Path(path_type=Path), help="Scene file (default: the built-in scene).")
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=Path("runs/topple-map"))
 def command(highest_cut: int, most: int, seeds: int, scene: Path | None, out: Path) -> None:

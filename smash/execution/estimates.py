@@ -17,7 +17,9 @@ from smash.problem.files import check_format, convert, parse_json, read_bytes, w
 
 ESTIMATES_FORMAT = "smash-topple-estimates/1"
 TRUSTED = 0.9
-"""A topple size is trusted where it and every smaller one succeed this often at every height tried."""
+"""A topple size is trusted where it and every smaller one succeed this often, ..."""
+ENOUGH = 8
+"""... in so many trials or more, and at no height of the cut fail more often than not."""
 
 
 Number = Annotated[str, msgspec.Meta(pattern="^[1-9][0-9]*$")]
@@ -53,11 +55,12 @@ class Estimates(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only
         return msgspec.structs.replace(bare, suggested_max_topple=bare.trusted_size())
 
     def trusted_size(self, trust: float = TRUSTED) -> int:
-        """The largest number of blocks up to which topples succeed in `trust` of the trials at every height; or 0."""
+        """The largest number of blocks up to which topples succeed in `trust` of enough trials; or 0."""
         largest = 0
         for size in sorted({size for by_size in self.by_cut_and_size.values() for size in by_size}, key=int):
             rates = [by_size[size] for by_size in self.by_cut_and_size.values() if size in by_size]
-            if any(rate.successes < trust * rate.trials for rate in rates):
+            successes, trials = sum(rate.successes for rate in rates), sum(rate.trials for rate in rates)
+            if trials < ENOUGH or successes < trust * trials or any(2 * r.successes < r.trials for r in rates):
                 break
             largest = int(size)
         return largest

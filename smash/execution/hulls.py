@@ -16,7 +16,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
-from smash.execution.robot import READY, panda_urdf
+from smash.execution.robot import panda_urdf
 from smash.execution.scene import Attached, HandState, Scene, in_words
 
 HAND = ("panda_hand_0", "panda_leftfinger_0", "panda_rightfinger_0")
@@ -152,8 +152,3 @@ def densify(waypoints: NDArray[np.float64], step: float) -> NDArray[np.float64]:
         fractions = np.arange(1, count + 1)[:, None] / count
         pieces.append(begin + fractions * (end - begin))
     return np.concatenate(pieces)
-
-
-def warm_up() -> None:
-    """Build the hulls now, so that the first motion's time is not theirs."""
-    HullChecker(Scene.of_boxes([], np.empty((0, 3)), 0.0)).contact(READY)

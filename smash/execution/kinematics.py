@@ -11,7 +11,6 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 import pinocchio
 
-from smash.execution.errors import NoIk
 from smash.execution.poses import ToolPose, Vector
 from smash.execution.robot import JOINTS, LOWER, READY, UPPER, Panda, panda, within_limits
 
@@ -58,18 +57,6 @@ def inverse(
         if len(found) >= count:
             break
     return sorted(found, key=lambda joints: float(np.linalg.norm(joints - reference)))
-
-
-def solve(pose: ToolPose, reference: Vector = READY, *, seed: int = 0) -> Vector:
-    """The first solution of `inverse`.
-
-    Raises:
-        NoIk: The pose is out of the arm's reach, or was not found.
-    """
-    found = inverse(pose, reference, seed=seed)
-    if not found:
-        raise NoIk(f"no joint configuration brings the tool to {_say(pose)}")
-    return found[0]
 
 
 def descend(pose: ToolPose, start: Vector, robot: Panda, iterations: int = ITERATIONS) -> Vector | None:
@@ -153,8 +140,3 @@ def _wrist_turned(joints: Vector, pose: ToolPose, robot: Panda) -> Vector:
     angle = limited[6] + float(np.arctan2(wanted[1], wanted[0]))
     limited[6] = np.clip((angle + np.pi) % (2 * np.pi) - np.pi, LOWER[6], UPPER[6])
     return limited
-
-
-def _say(pose: ToolPose) -> str:
-    x, y, z = (float(value) for value in pose.position)
-    return f"x {x:.3f}, y {y:.3f}, z {z:.3f} m"

@@ -1,14 +1,12 @@
 """Motions between configurations and to tool poses, free of collisions.
 
 A `MotionPlanner` tries the straight joint segment first, then a tree. `line` keeps the tool on a straight line
-(approach, lift, topple push); `reach` chains a free motion and a line to a tool pose. Whatever is returned has been
-checked a second time, against the hulls of the robot's meshes. Configurations are in rad, shape (7,); lengths in m.
+(approach, lift, topple push). Whatever is returned has been checked a second time, against the hulls of the robot's
+meshes. Configurations are in rad, shape (7,); lengths in m.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -17,9 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 from smash.execution.collision import CONTACT_MARGIN, DEFAULT_MARGIN, CollisionChecker
 from smash.execution.errors import NoIk, NoMotion
 from smash.execution.hulls import Contact, HullChecker, densify
-from smash.execution.kinematics import along_line, inverse
+from smash.execution.kinematics import along_line
 from smash.execution.paths import Path, round_corners
-from smash.execution.poses import ToolPose, Vector
+from smash.execution.poses import Vector
 from smash.execution.robot import within_limits
 from smash.execution.scene import HandState, Scene
 
@@ -31,22 +29,6 @@ HULL_TOLERANCE = 0.003
 """The hulls may enter a box by this much in motions that end in contact [m]."""
 SEARCHES = 2
 """Tree searches, each with its own seed, before a query is given up."""
-SOLUTIONS_PER_POSE = 3
-
-
-@dataclass(frozen=True, eq=False)
-class Reach:
-    """A free motion and a straight line that end at a tool pose.
-
-    Attributes:
-        index: Which of the poses asked for was reached.
-        transfer: From the start to where the line begins.
-        approach: The line to the pose; `approach.reversed()` retreats.
-    """
-
-    index: int
-    transfer: Path
-    approach: Path
 
 
 class MotionPlanner:
@@ -160,51 +142,6 @@ class MotionPlanner:
         if contact is not None:
             raise NoMotion(f"on a line by {_say(offset)}, {contact}")
         return Path(waypoints, "line")
-
-    def reach(
-        self,
-        start: Vector,
-        poses: Sequence[ToolPose],
-        scene: Scene,
-        *,
-        back: ArrayLike = (0.0, 0.0, 0.10),
-        hand: HandState | None = None,
-        contact_scene: Scene | None = None,
-    ) -> Reach:
-        """A free motion to `pose + back` and a line from there to the pose, for the first pose that allows it.
-
-        Args:
-            start: [rad], shape (7,).
-            poses: Tool poses, the best first.
-            scene: What the free motion must not touch.
-            back: Where the line begins, relative to the pose [m], shape (3,).
-            hand: Finger opening and carried block during both motions.
-            contact_scene: What the line must not touch: `scene` less the block to be grasped, say; `scene` by default.
-
-        Raises:
-            NoIk: No pose can be reached.
-            NoMotion: Poses can be reached, but no motion leads there; the message is about the best pose.
-        """
-        near = scene if contact_scene is None else contact_scene
-        problem: NoMotion | None = None
-        for index, pose in enumerate(poses):
-            for solution in inverse(pose, start, count=SOLUTIONS_PER_POSE, seed=self.seed):
-                try:
-                    retreat = self.line(solution, back, near, hand=hand)
-                    transfer = self.plan(start, retreat.end, scene, hand=hand)
-                except NoIk:
-                    continue
-                except NoMotion as failure:
-                    problem = problem or failure
-                    continue
-                return Reach(index, transfer, retreat.reversed())
-        raise problem or NoIk(f"none of {len(poses)} tool poses can be reached with a straight approach")
-
-    def contact(
-        self, configurations: NDArray[np.float64], scene: Scene, *, hand: HandState | None = None
-    ) -> Contact | None:
-        """The first contact of the robot's hulls along configurations [rad], shape (T, 7), or None."""
-        return HullChecker(scene, hand, HULL_TOLERANCE).contact(configurations)
 
     def _tree_path(
         self, begin: Vector, ends: NDArray[np.float64], checker: CollisionChecker, hulls: HullChecker | None

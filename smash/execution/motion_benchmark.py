@@ -1,40 +1,41 @@
 """How fast, how straight, how safe: `python -m smash.execution.motion_benchmark` prints the figures of docs/motion.md.
 
-Random picks, places and topple pushes: three stack places and twelve buffers, random piles, some blocks lying about.
-Times are CPU time of this process, the check against the hulls included, the compilation of the kernels left out.
+Random picks, places and topples, planned by what the executor plans them by, in the default scene: piles on stacks and
+buffers, some blocks lying about. Times are CPU time of this process, the check against the hulls included, the
+compilation of the kernels left out.
 """
 
 from __future__ import annotations
 
 import argparse
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from time import process_time
+from typing import Any
 
 import numpy as np
 
+from smash.execution.aggregate_motion import Geometry
+from smash.execution.block_pose import standing
 from smash.execution.collision import CollisionChecker
 from smash.execution.errors import ExecutionFailure
 from smash.execution.hulls import HullChecker
 from smash.execution.kinematics import inverse
 from smash.execution.motion import MotionPlanner
 from smash.execution.paths import Path
-from smash.execution.poses import ToolPose, Vector, top_down, yaw_rotation
+from smash.execution.poses import top_down
+from smash.execution.pushes import topple
 from smash.execution.robot import LOWER, READY, UPPER
-from smash.execution.scene import Attached, HandState, Scene
-from smash.execution.timing import FREE, Pace, Trajectory, time_path, topple_pace
+from smash.execution.scene import Scene
+from smash.execution.scene_file import default_scene
+from smash.execution.start import starting_poses
+from smash.execution.steps import Move, Segment, Steps
+from smash.problem.files import make_instance
+from smash.problem.model import Instance, PositionsGoal
 
-SIDE = 0.045
-STACKS = ((0.45, -100.0), (0.45, -30.0), (0.45, 40.0))
-BUFFERS = (
-    *((0.42, angle) for angle in np.arange(102.0, 159.0, 14.0)),
-    *((0.58, angle) for angle in np.arange(102.0, 163.0, 10.0)),
-)
-OPEN = HandState(SIDE / 2 + 0.01)
-CLOSED = HandState()
-LIFT = (0.0, 0.0, 0.10)
-RUN_UP = 0.10
+TOUCH = 0.003
+"""Hulls may enter a box by this much where a motion ends in contact [m]."""
 
 
 @dataclass
@@ -45,177 +46,132 @@ class Tally:
         seconds: CPU seconds by kind of work [s].
         kinds: How many free motions were straight, how many needed a tree.
         failures: By name.
-        trajectories: Those of all motions, with the scene and the hand they were planned for.
+        moves: All motions, with the scene they were planned in.
     """
 
     seconds: dict[str, list[float]] = field(default_factory=dict)
     kinds: Counter[str] = field(default_factory=Counter)
     failures: Counter[str] = field(default_factory=Counter)
-    trajectories: list[tuple[Trajectory, Scene, HandState]] = field(default_factory=list)
+    moves: list[tuple[Move, Scene]] = field(default_factory=list)
 
-    def add(self, what: str, begun: float) -> None:
-        """Count the CPU time since `begun`."""
-        self.seconds.setdefault(what, []).append(process_time() - begun)
-
-
-@dataclass(frozen=True)
-class Table:
-    """Piles on their places and blocks that lie flat, as names, and all of them as a scene."""
-
-    piles: tuple[tuple[str, ...], ...]
-    lying: tuple[str, ...]
-    scene: Scene
-
-    def pose(self, block: str, turn: int) -> ToolPose:
-        """Grasp of a block at its middle, with one of its four yaws."""
-        index = self.scene.names.index(block)
-        axis = self.scene.rotations[index][:, 0]
-        return top_down(self.scene.centres[index], float(np.arctan2(axis[1], axis[0])) + turn * np.pi / 2)
+    def add(self, what: str, seconds: float) -> None:
+        """Count CPU time [s]."""
+        self.seconds.setdefault(what, []).append(seconds)
 
 
-def random_table(generator: np.random.Generator, blocks: int) -> Table:
-    """Blocks on random places, up to a third of them lying where a topple could have left them."""
-    places = (*STACKS, *BUFFERS)
-    piles: list[list[str]] = [[] for _ in places]
-    names: list[str] = []
-    centres: list[Vector] = []
-    rotations: list[Vector] = []
-    lying: list[str] = []
-    fallen = int(generator.integers(0, blocks // 3 + 1))
-    for number in range(blocks):
-        name = f"b{number}"
-        if number < fallen:
-            angle, radius = np.deg2rad(generator.uniform(-80.0, 20.0)), generator.uniform(0.33, 0.62)
-            middle = np.array([radius * np.cos(angle), radius * np.sin(angle), SIDE / 2])
-            if any(np.linalg.norm(middle[:2] - other[:2]) < 1.6 * SIDE for other in centres):
-                continue
-            lying.append(name)
-            turn = generator.uniform(-np.pi, np.pi)
-        else:
-            place = int(generator.choice(len(STACKS)) if generator.random() < 0.7 else generator.choice(len(places)))
-            radius, turn = places[place][0], np.deg2rad(places[place][1])
-            height = SIDE * (len(piles[place]) + 0.5)
-            middle = np.array([radius * np.cos(turn), radius * np.sin(turn), height])
-            if any(np.linalg.norm(middle - other) < 1.6 * SIDE for other in centres[: len(lying)]):
-                continue
-            piles[place].append(name)
-        names.append(name)
-        centres.append(middle)
-        rotations.append(yaw_rotation(float(turn)))
-    scene = Scene.of_boxes(names, np.array(centres), SIDE / 2, np.array(rotations)).with_table()
-    return Table(tuple(tuple(pile) for pile in piles), tuple(lying), scene)
+class TimedPlanner(MotionPlanner):
+    """A motion planner that tells a tally what each answer took."""
+
+    def __init__(self, tally: Tally, seed: int) -> None:
+        super().__init__(seed=seed)
+        self._tally = tally
+
+    def plan(self, *arguments: Any, **settings: Any) -> Path:
+        """Time a free motion."""
+        begun = process_time()
+        path = super().plan(*arguments, **settings)
+        self._tally.add("free motion", process_time() - begun)
+        self._tally.add(f"free motion, {path.kind}", process_time() - begun)
+        self._tally.kinds[path.kind] += 1
+        return path
+
+    def line(self, *arguments: Any, **settings: Any) -> Path:
+        """Time a line."""
+        begun = process_time()
+        path = super().line(*arguments, **settings)
+        self._tally.add("line", process_time() - begun)
+        return path
+
+
+def random_table(generator: np.random.Generator, blocks: int) -> tuple[Instance, Geometry]:
+    """Blocks in random piles of the default scene, 70 % on stacks; up to a third lie in the table region."""
+    scene = default_scene()
+    stacks = [f"s{number}" for number in range(len(scene.stacks))]
+    buffers = [f"u{number}" for number in range(len(scene.buffers))]
+    names = [f"b{number}" for number in range(blocks)]
+    lying = int(generator.integers(0, blocks // 3 + 1))
+    start: dict[str, list[str]] = {}
+    for name in names[lying:]:
+        start.setdefault(str(generator.choice(stacks if generator.random() < 0.7 else buffers)), []).append(name)
+    instance = make_instance(
+        name="random",
+        blocks=names,
+        stacks=stacks,
+        buffers=buffers,
+        start=start,
+        table=names[:lying],
+        goal=PositionsGoal({}),
+    )
+    slots = scene.bind(instance)
+    return instance, Geometry(slots, blocks=starting_poses(instance, slots, scene, generator))
 
 
 def run(tables: int, blocks: int, seed: int) -> Tally:
-    """Plan a pick, a place and a topple push on each of so many random tables."""
-    tally, planner = Tally(), MotionPlanner(seed=seed)
+    """Plan a pick, a place and a topple on each of so many random tables."""
+    tally = Tally()
+    steps = Steps(default_scene(), seed)
+    steps.motion = TimedPlanner(tally, seed)
     for number in range(tables):
         generator = np.random.default_rng([seed, number])
-        table = random_table(generator, blocks)
-        try:
-            _pick_and_place(table, generator, planner, tally)
-            _push(table, generator, planner, tally)
-        except ExecutionFailure as failure:
-            tally.failures[failure.failure] += 1
+        instance, where = random_table(generator, blocks)
+        for action in (_pick_and_place, _topple):
+            try:
+                action(steps, instance, where, generator, tally)
+            except ExecutionFailure as failure:
+                tally.failures[failure.failure] += 1
     return tally
 
 
-def _pick_and_place(table: Table, generator: np.random.Generator, planner: MotionPlanner, tally: Tally) -> None:
-    takable = [*table.lying, *(pile[-1] for pile in table.piles if pile)]
-    block = str(generator.choice(takable))
-    target = int(generator.choice([place for place, pile in enumerate(table.piles) if not pile or pile[-1] != block]))
-    rest = table.scene.without([block])
-    grasps = [table.pose(block, turn) for turn in (0, 1, 2, 3)]
-    grasped = _reach(READY, grasps, table.scene, rest, OPEN, planner, tally)
-    held = HandState(SIDE / 2, Attached.cube(SIDE))
-    lifted = _line(grasped, LIFT, rest, held, planner, tally)
-    radius, angle = (*STACKS, *BUFFERS)[target]
-    height = SIDE * (len(table.piles[target]) + 0.5) + 0.001
-    spot = np.array([radius * np.cos(np.deg2rad(angle)), radius * np.sin(np.deg2rad(angle)), height])
-    places = [top_down(spot, np.deg2rad(angle) + turn * np.pi / 2) for turn in range(4)]
-    _reach(lifted, places, rest, rest, held, planner, tally)
+def _pick_and_place(
+    steps: Steps, instance: Instance, where: Geometry, generator: np.random.Generator, tally: Tally
+) -> None:
+    piles = {location: pile for location, pile in instance.start.items() if pile}
+    block = str(generator.choice([*instance.table, *(pile[-1] for pile in piles.values())]))
+    target = str(generator.choice([q for q in instance.locations if not instance.start[q] or piles[q][-1] != block]))
+    scene = steps.scene(where.blocks)
+    begun = process_time()
+    lifted = _count("pick", begun, steps.pick(READY, block, where.blocks[block], scene), scene, tally)
+    slot, height = where.slots[target], (len(instance.start[target]) + 0.5) * steps.side
+    begun = process_time()
+    way = steps.landing(lifted, block, standing(slot.x, slot.y, height, slot.angle), scene)
+    _count("place", begun, steps.place(lifted, block, way, scene), scene, tally)
 
 
-def _push(table: Table, generator: np.random.Generator, planner: MotionPlanner, tally: Tally) -> None:
-    stacks = [place for place in range(len(STACKS)) if table.piles[place]]
+def _topple(steps: Steps, instance: Instance, where: Geometry, generator: np.random.Generator, tally: Tally) -> None:
+    stacks = [location for location in instance.stacks if instance.start[location]]
     if not stacks:
         return
-    place = int(generator.choice(stacks))
-    pile = table.piles[place]
-    cut = int(generator.integers(len(pile)))
-    radius, angle = STACKS[place][0], np.deg2rad(STACKS[place][1])
-    along = np.array([-np.sin(angle), np.cos(angle), 0.0])
-    middle = np.array([radius * np.cos(angle), radius * np.sin(angle), SIDE * (cut + 0.2) + 0.0072])
-    before = middle - (SIDE / 2 + 0.032 + RUN_UP) * along
-    poses = [top_down(before, float(angle) + turn) for turn in (np.pi / 2, -np.pi / 2)]
-    ready = _reach(READY, poses, table.scene, table.scene, CLOSED, planner, tally)
-    rest = table.scene.without(pile[cut:])
-    _line(ready, (RUN_UP + 1.1 * SIDE) * along, rest, CLOSED, planner, tally, topple_pace(len(pile) - cut))
-
-
-def _reach(
-    start: Vector,
-    poses: Sequence[ToolPose],
-    scene: Scene,
-    near: Scene,
-    hand: HandState,
-    planner: MotionPlanner,
-    tally: Tally,
-) -> Vector:
+    location = str(generator.choice(stacks))
+    pile = instance.start[location]
+    height = int(generator.integers(1, len(pile) + 1))
     begun = process_time()
-    reach = planner.reach(start, poses, scene, hand=hand, contact_scene=near, back=LIFT)
-    tally.add("reach (grasp, line and free motion)", begun)
-    _free(start, reach.transfer.end, scene, hand, planner, tally)
-    _time(reach.approach, near, hand, tally)
-    return reach.approach.end
+    segments = topple(steps, READY, where.slots[location], pile, height, where.blocks, None, frozenset(instance.table))
+    _count("topple", begun, segments, steps.scene(where.blocks), tally)
 
 
-def _free(start: Vector, goal: Vector, scene: Scene, hand: HandState, planner: MotionPlanner, tally: Tally) -> None:
-    begun = process_time()
-    path = planner.plan(start, goal, scene, hand=hand)
-    tally.add("free motion", begun)
-    tally.seconds.setdefault(f"free motion, {path.kind}", []).append(tally.seconds["free motion"][-1])
-    tally.kinds[path.kind] += 1
-    _time(path, scene, hand, tally)
-
-
-def _line(
-    start: Vector,
-    offset: Iterable[float],
-    scene: Scene,
-    hand: HandState,
-    planner: MotionPlanner,
-    tally: Tally,
-    pace: Pace = FREE,
-) -> Vector:
-    begun = process_time()
-    path = planner.line(start, tuple(offset), scene, hand=hand)
-    tally.add("line", begun)
-    _time(path, scene, hand, tally, pace)
-    return path.end
-
-
-def _time(path: Path, scene: Scene, hand: HandState, tally: Tally, pace: Pace = FREE) -> None:
-    begun = process_time()
-    trajectory = time_path(path, pace)
-    tally.add("time parameterisation", begun)
-    tally.trajectories.append((trajectory, scene, hand))
+def _count(what: str, begun: float, segments: Sequence[Segment], scene: Scene, tally: Tally) -> Any:
+    """Count an action's planning and its motions; return where the arm is afterwards [rad], shape (7,)."""
+    tally.add(what, process_time() - begun)
+    moves = [segment for segment in segments if isinstance(segment, Move)]
+    tally.add(f"a motion of a {what}", tally.seconds[what][-1] / len(moves))
+    tally.moves += [(move, scene) for move in moves]
+    return moves[-1].path.end
 
 
 def touching(tally: Tally, step: float = 0.01) -> int:
-    """How many of the timed trajectories touch something, asked of the hulls every `step` [s]."""
+    """How many of the timed motions touch what they should not, asked of the hulls every `step` [s]."""
     return sum(
-        HullChecker(scene, hand, 0.003).contact(trajectory.sample(step)) is not None
-        for trajectory, scene, hand in tally.trajectories
+        HullChecker(scene.without(move.ignored), move.hand, TOUCH).contact(move.trajectory.sample(step)) is not None
+        for move, scene in tally.moves
     )
 
 
 def compare_checkers(states: int, seed: int) -> Counter[tuple[bool, bool]]:
     """(free by the spheres, free by the hulls) of random configurations on a random table, a block in the hand."""
     generator = np.random.default_rng(seed)
-    table = random_table(generator, 9)
-    held = HandState(SIDE / 2, Attached.cube(SIDE))
-    fast, exact = CollisionChecker(table.scene, held, 0.0), HullChecker(table.scene, held, 0.0)
+    steps = Steps(default_scene())
+    scene = steps.scene(random_table(generator, 9)[1].blocks)
+    fast, exact = CollisionChecker(scene, steps.holding, 0.0), HullChecker(scene, steps.holding, 0.0)
     verdicts: Counter[tuple[bool, bool]] = Counter()
     for joints in generator.uniform(LOWER, UPPER, (states, 7)):
         verdicts[fast.free(joints), exact.contact(joints) is None] += 1
@@ -239,7 +195,7 @@ def solve_targets(count: int, seed: int) -> tuple[int, list[float]]:
 def table_of(seconds: dict[str, list[float]]) -> str:
     """A Markdown table: count, median, 95th percentile and greatest [ms]."""
     rows = ["| | count | median [ms] | p95 [ms] | greatest [ms] |", "| --- | ---: | ---: | ---: | ---: |"]
-    for what, values in seconds.items():
+    for what, values in sorted(seconds.items()):
         milliseconds = np.array(values) * 1000
         cells = [f"{value:.1f}" for value in (*np.percentile(milliseconds, [50, 95]), milliseconds.max())]
         rows.append(f"| {what} | {len(values)} | " + " | ".join(cells) + " |")
@@ -262,7 +218,7 @@ def main() -> None:
     total = sum(tally.kinds.values())
     print(f"\nStraight: {tally.kinds['straight']} of {total} free motions. Failures: {dict(tally.failures) or 'none'}.")
     print(f"Inverse kinematics: {solved} of {len(seconds)} targets.")
-    print(f"Timed trajectories that touch something: {touching(tally)} of {len(tally.trajectories)}.")
+    print(f"Timed motions that touch something: {touching(tally)} of {len(tally.moves)}.")
     verdicts = compare_checkers(options.states, options.seed)
     print(
         f"{options.states} random states: {verdicts[True, True]} free by both, {verdicts[False, False]} blocked by "

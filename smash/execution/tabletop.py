@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import atan2, cos, hypot, pi, sin
+from math import cos, hypot, pi, sin
 
 from smash.execution.block_pose import QUARTER, BlockPose
 from smash.execution.tray import Tray
@@ -162,8 +162,3 @@ class Tabletop:
 def stations_of(instance: Instance) -> tuple[str, ...]:
     """The stations of all carriers, in the instance's order, each once."""
     return tuple(dict.fromkeys(station for carrier in instance.carriers for station in carrier.stations))
-
-
-def bearing(x: float, y: float) -> float:
-    """Direction of a point as seen from the robot's base [rad]."""
-    return atan2(y, x)

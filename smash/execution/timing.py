@@ -43,11 +43,6 @@ FREE = Pace()
 """Motions through the free space."""
 
 
-def topple_pace(blocks: int) -> Pace:
-    """Pace of the push that topples `blocks` blocks: 0.5 m/s at the fingertip, 0.8 m/s from 5 blocks on."""
-    return Pace(acceleration=1.0, tool_speed=0.8 if blocks >= 5 else 0.5)
-
-
 @dataclass(frozen=True, eq=False)
 class Trajectory:
     """Configurations over time; cubic Hermite between the knots.

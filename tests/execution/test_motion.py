@@ -3,19 +3,18 @@ import pytest
 
 from smash.execution.collision import CollisionChecker
 from smash.execution.errors import NoMotion
-from smash.execution.kinematics import solve
+from smash.execution.hulls import HullChecker
+from smash.execution.kinematics import inverse
 from smash.execution.motion import MotionPlanner
 from smash.execution.motion_benchmark import run, touching
 from smash.execution.poses import top_down
-from smash.execution.robot import READY, panda
-from smash.execution.scene import Attached, HandState, Scene
+from smash.execution.robot import READY
+from smash.execution.scene import Scene
 from tests.execution.towers import SIDE, tower_scene
-
-OPEN = HandState(SIDE / 2 + 0.01)
 
 
 def above(angle, height):
-    return solve(top_down([0.45 * np.cos(angle), 0.45 * np.sin(angle), height], angle))
+    return inverse(top_down([0.45 * np.cos(angle), 0.45 * np.sin(angle), height], angle))[0]
 
 
 def test_a_free_way_is_a_straight_joint_segment():
@@ -45,20 +44,6 @@ def test_a_blocked_goal_is_no_motion_and_names_the_block():
     assert caught.value.failure == "no motion"
 
 
-def test_the_fingers_reach_around_the_block_to_grasp_and_lift_it_away():
-    scene = tower_scene({0.0: 3, 0.7: 1})
-    block = "0.0/2"
-    pose = top_down([0.45, 0.0, SIDE * 2.5], 0.0)
-    planner = MotionPlanner()
-    reach = planner.reach(READY, [pose], scene, hand=OPEN, contact_scene=scene.without([block]))
-    assert np.allclose(panda().forward(reach.approach.end).position, pose.position, atol=1e-4)
-    held = HandState(SIDE / 2, Attached.cube(SIDE))
-    lift = planner.line(reach.approach.end, (0.0, 0.0, 0.1), scene.without([block]), hand=held)
-    place = top_down([0.45 * np.cos(0.7), 0.45 * np.sin(0.7), SIDE * 1.5], 0.7)
-    set_down = planner.reach(lift.end, [place], scene.without([block]), hand=held)
-    assert np.allclose(panda().forward(set_down.approach.end).position, place.position, atol=1e-4)
-
-
 def test_a_line_through_a_tower_is_refused():
     scene = tower_scene({0.0: 9})
     with pytest.raises(NoMotion, match="is blocked by block"):
@@ -71,7 +56,7 @@ def test_rounded_corners_stay_free_and_keep_the_ends():
     turns = np.diff(path.waypoints, axis=0)
     turns /= np.linalg.norm(turns, axis=1)[:, None]
     assert np.degrees(np.arccos(np.clip(np.sum(turns[1:] * turns[:-1], axis=1), -1, 1))).max() < 90
-    assert MotionPlanner().contact(path.waypoints, scene) is None
+    assert HullChecker(scene, None, 0.003).contact(path.waypoints) is None
 
 
 def test_an_empty_scene_and_a_motion_to_where_the_arm_is():
@@ -91,5 +76,5 @@ def test_random_picks_places_and_pushes_are_fast_mostly_straight_and_touch_nothi
     tally = run(tables=40, blocks=9, seed=2)
     assert touching(tally) == 0
     assert tally.kinds["straight"] >= 0.6 * sum(tally.kinds.values())
-    assert np.median(tally.seconds["free motion"]) < 0.02
+    assert np.median(tally.seconds["a motion of a pick"]) < 0.04
     assert sum(tally.failures.values()) <= 4

@@ -1,8 +1,23 @@
+import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from smash.execution.block_pose import standing
-from smash.execution.pushes import MOST_CUT, MOST_SWEPT, directions, first_cut, pushes_needed
+from smash.execution.pushes import (
+    MOST_CUT,
+    MOST_SWEPT,
+    PUSH_MARGIN,
+    RUN_UP,
+    directions,
+    first_cut,
+    manner,
+    pushes_needed,
+    topple,
+)
+from smash.execution.robot import READY, panda
+from smash.execution.scene_file import default_scene
+from smash.execution.steps import Move, Steps
 from smash.execution.tabletop import Slot
 
 
@@ -25,3 +40,17 @@ def test_the_direction_whose_strip_is_emptier_comes_first():
     lying = standing(*slot.point(0.2, 0.0, "counter-clockwise"), 0.0225, 0.0)
     assert directions(slot, 2, [], 0.045) == ["counter-clockwise", "clockwise"]
     assert directions(slot, 2, [lying], 0.045) == ["clockwise", "counter-clockwise"]
+
+
+@pytest.mark.parametrize(("height", "falling", "at_contact"), [(1, 2, 0.30), (1, 5, 0.15), (2, 2, 0.50), (2, 4, 0.60)])
+def test_a_push_meets_the_pile_at_the_speed_that_its_manner_asks_for_as_far_as_the_arm_can(height, falling, at_contact):
+    scene = default_scene()
+    slot, pile = scene.stacks[1], tuple(f"b{level}" for level in range(height + falling - 1))
+    poses = {b: standing(slot.x, slot.y, (level + 0.5) * scene.side, slot.angle) for level, b in enumerate(pile)}
+    moves = [move for move in topple(Steps(scene), READY, slot, pile, height, poses) if isinstance(move, Move)]
+    push = next(move for move in moves if move.margin == PUSH_MARGIN and move.ignored)
+    tool = np.array([panda().forward(row).position for row in push.trajectory.sample(1e-3)])
+    speeds = np.linalg.norm(np.diff(tool, axis=0), axis=1) / 1e-3
+    contact = int(np.searchsorted(np.linalg.norm(tool - tool[0], axis=1), RUN_UP))
+    assert speeds[contact] >= 0.98 * at_contact
+    assert speeds.max() <= 1.03 * manner(height, falling).speed

@@ -1,11 +1,10 @@
 import numpy as np
 import pytest
 
-from smash.execution.motion import MotionPlanner
 from smash.execution.paths import Path, round_corners
-from smash.execution.robot import ACCELERATION, READY, VELOCITY, panda
+from smash.execution.robot import ACCELERATION, READY, VELOCITY
 from smash.execution.scene import Scene
-from smash.execution.timing import Pace, time_path, topple_pace, trapezoid
+from smash.execution.timing import Pace, time_path, trapezoid
 
 CORNERS = np.stack([READY, READY + 0.4, READY + np.array([0.8, 0.2, 0, 0.1, 0, 0.3, -0.4])])
 EMPTY = Scene.of_boxes([], np.empty((0, 3)), 0.0)
@@ -29,17 +28,6 @@ def test_a_straight_segment_runs_at_the_limit_of_its_slowest_joint():
     trajectory = trapezoid(READY, READY + np.array([2.0, 0, 0, 0, 0, 0, 0]), Pace(1.0, 1.0))
     assert trajectory.duration == pytest.approx(2.0 / VELOCITY[0] + VELOCITY[0] / ACCELERATION[0])
     assert np.abs(trajectory.velocities).max() == pytest.approx(VELOCITY[0])
-
-
-@pytest.mark.parametrize(("blocks", "speed"), [(1, 0.5), (4, 0.5), (5, 0.8)])
-def test_the_topple_push_reaches_its_tool_speed_and_no_more(blocks, speed):
-    push = MotionPlanner().line(READY, (0.0, 0.25, 0.0), EMPTY)
-    trajectory = time_path(push, topple_pace(blocks))
-    step = 1e-3
-    tool = np.array([panda().forward(row).position for row in trajectory.sample(step)])
-    speeds = np.linalg.norm(np.diff(tool[:-1], axis=0), axis=1) / step
-    assert speeds.max() <= speed * 1.03
-    assert speeds.max() >= speed * 0.95
 
 
 def test_a_path_of_no_length_takes_no_time():

@@ -25,10 +25,23 @@ def test_estimates_count_by_cut_and_size():
     assert found.by_cut_and_size == {"1": {"2": Rate(1, 2)}, "2": {"1": Rate(1, 1)}}
 
 
-def test_the_trusted_size_stops_at_the_first_that_fails():
-    trials = [trial(1, 1, True), trial(2, 1, True), trial(1, 2, True), trial(2, 2, False), trial(1, 3, True)]
-    assert estimates("s", trials).suggested_max_topple == 1
-    assert estimates("s", trials).trusted_size(trust=0.0) == 3
+def sized(falling, *good, height=1):
+    return [trial(height, falling, outcome, seed) for seed, outcome in enumerate(good)]
+
+
+def test_the_trusted_size_stops_at_the_first_that_fails_too_often():
+    trials = sized(1, *[True] * 8) + sized(2, *[True] * 8) + sized(3, *[True] * 8, False, False)
+    assert estimates("s", trials).suggested_max_topple == 2
+    assert estimates("s", trials).trusted_size(trust=0.7) == 3
+
+
+def test_a_size_that_mostly_fails_at_one_height_is_not_trusted():
+    trials = sized(1, *[True] * 20) + sized(1, True, False, False, height=2)
+    assert estimates("s", trials).trusted_size(trust=0.8) == 0
+
+
+def test_few_trials_are_no_reason_for_trust():
+    assert estimates("s", sized(1, *[True] * 7)).suggested_max_topple == 0
 
 
 def test_no_size_is_trusted_where_the_smallest_fails():
@@ -36,7 +49,7 @@ def test_no_size_is_trusted_where_the_smallest_fails():
 
 
 def test_estimates_are_read_back_as_written(tmp_path):
-    found = estimates("s", [trial(1, 10, True), trial(1, 9, True)])
+    found = estimates("s", sized(10, *[True] * 8) + sized(9, *[True] * 8))
     write_estimates(found, tmp_path / "estimates.json")
     assert read_estimates(tmp_path / "estimates.json") == found
     assert found.suggested_max_topple == 10
