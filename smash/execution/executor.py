@@ -155,7 +155,7 @@ class Executor:
             row.times = Times(offline=task.seconds, offline_cpu=task.cpu_seconds)
         else:
             row.times = Times(online=task.seconds, online_cpu=task.cpu_seconds)
-        row.gap = task.segments is None and task.problem is None
+        row.gap = origin != "recovery" and task.segments is None and task.problem is None
         begun = row.begun = self.world.time
         try:
             self.performer.perform(task, row, expected)

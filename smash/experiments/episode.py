@@ -15,28 +15,16 @@ from smash.execution.policy import OPEN
 from smash.execution.scene_file import default_scene, read_scene
 from smash.experiments.episodes import REPLAN_BUDGET
 from smash.experiments.lifetime import end_with_parent
+from smash.experiments.records import recorded_plan
 from smash.experiments.replanning import replanner
-from smash.problem.files import PLAN_FORMAT_2, instance_from_document, plan_from_document
-
-PLAN_FIELDS = (
-    "instance",
-    "planner",
-    "topple",
-    "max_topple",
-    "status",
-    "cost",
-    "actions",
-    "lower_bound",
-    "bound_origin",
-)
+from smash.problem.files import instance_from_document
 
 
 def run_question(question: dict[str, Any]) -> Episode:
     """Carry out the plan of a sweep's record: its `seed`, `policy`, `scene`, `replay` (paths or None)."""
     record = question["record"]
     instance = instance_from_document(record["instance_document"])
-    filed = {field: record[field] for field in PLAN_FIELDS} | {"without": record.get("without", [])}
-    plan = plan_from_document({"format": PLAN_FORMAT_2, **filed})
+    plan = recorded_plan(record)
     scene = default_scene() if question["scene"] is None else read_scene(question["scene"])
     seed, is_open = question["seed"], question["policy"] == "open"
     replay = question.get("replay")
