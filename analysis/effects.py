@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import pandas as pd
 
 from analysis.statistics import Paired, paired
-from analysis.tables import share
+from analysis.tables import rate_cell
 
 WITHOUT = "no-topple"
 ANY = "proven optima, any planner"
@@ -103,8 +103,8 @@ def topple_table(effects: list[Effect]) -> pd.DataFrame:
         rows.append(
             {
                 **{names.get(name, name): value for name, value in effect.about.items()},
-                "solved without": share(pair.left_solved, pair.problems),
-                "solved with": share(pair.right_solved, pair.problems),
+                "solved without": rate_cell(pair.left_rate, "problems"),
+                "solved with": rate_cell(pair.right_rate, "problems"),
                 "common instances": pair.units,
                 "without": figure(pair.left_mean),
                 "with": figure(pair.right_mean),
@@ -126,8 +126,8 @@ def planner_table(effects: list[Effect], reference: str) -> pd.DataFrame:
         rows.append(
             {
                 **effect.about,
-                "solved": share(pair.left_solved, pair.problems),
-                f"solved, {reference}": share(pair.right_solved, pair.problems),
+                "solved": rate_cell(pair.left_rate, "problems"),
+                f"solved, {reference}": rate_cell(pair.right_rate, "problems"),
                 "common instances": pair.units,
                 "actions": figure(pair.left_mean),
                 f"actions, {reference}": figure(pair.right_mean),

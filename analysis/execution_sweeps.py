@@ -18,14 +18,14 @@ from matplotlib.figure import Figure
 
 from analysis.execution_tables import WITHOUT, paired_table, read_episodes
 from analysis.records import NoRecords, read_lines
-from analysis.statistics import wilson
-from analysis.tables import markdown
+from analysis.statistics import success_rate, wilson
+from analysis.tables import RATES, markdown, rate_cell
 
 TRIAL_FORMAT = "smash-topple-trial/1"
 DEFAULT = "default"
 LEGEND = (
-    "Scenes differ in the friction of blocks on blocks (in their names; `default` is 0.20). Success with its 95 % "
-    "Wilson interval; execution in simulated seconds over successful episodes, means."
+    f"Scenes differ in the friction of blocks on blocks (in their names; `default` is 0.20). {RATES} "
+    "Execution in simulated seconds over successful episodes, means."
 )
 
 
@@ -34,12 +34,11 @@ def scene_table(episodes: pd.DataFrame) -> pd.DataFrame:
     rows = []
     keys = ["scene", "benchmark", "blocks", "variant", "policy"]
     for key, group in episodes.groupby(keys, sort=True):
-        low, high = wilson(int(group["success"].sum()), len(group))
         good = group[group["success"]]
         rows.append(
             {
                 **dict(zip(keys, key, strict=True)),
-                "success": f"{group['success'].mean():.2f} [{low:.2f}, {high:.2f}] of {len(group)}",
+                "success": rate_cell(success_rate(group, "success"), "episodes"),
                 "planned actions": f"{group['cost'].mean():.1f}",
                 "carried out": f"{good['executed'].mean():.1f}" if len(good) else "–",
                 "replans": int(group["replans"].sum()),

@@ -11,13 +11,13 @@ import pandas as pd
 
 from analysis.paper_tables import METRICS, PAPER, SIZES, Metric
 from analysis.records import NoRecords, read_lines
-from analysis.statistics import paired, wilson
-from analysis.tables import latex, markdown, mean_std, share
+from analysis.statistics import paired, success_rate
+from analysis.tables import RATES, latex, markdown, mean_std, rate_cell
 
 FORMAT = "smash-episode-run/1"
 TIMES = ("offline", "offline_cpu", "online", "online_cpu", "execution", "task")
 LEGEND = (
-    "Cells: mean ± std (median) over instances; success with its 95 % Wilson interval; the paper: mean ± std. "
+    f"Cells: mean ± std (median) over instances; the paper: mean ± std. {RATES} "
     "Times of motion planning (MP) are by the planning thread's clock, so that other work on the machine does not "
     "count; those of task planning (TP) are by the wall's clock."
 )
@@ -102,8 +102,7 @@ def _cell(group: pd.DataFrame, metric: Metric) -> str:
     if group.empty:
         return "–"
     if metric.name == "success":
-        low, high = wilson(int(group["success"].sum()), len(group))
-        return f"{group['success'].mean():.2f} [{low:.2f}, {high:.2f}] of {len(group)}"
+        return rate_cell(success_rate(group, "success"), "episodes")
     values = group if metric.column in ("depth", "first_plan_seconds") else group[group["success"]]
     each = values.groupby("instance")[metric.column].mean().dropna()
     if each.empty:
@@ -130,8 +129,8 @@ def paired_table(episodes: pd.DataFrame) -> pd.DataFrame:
                 "planner": label,
                 "variant": variant,
                 "policy": policy,
-                "success without": share(pair.left_solved, pair.problems),
-                "success with": share(pair.right_solved, pair.problems),
+                "success without": rate_cell(pair.left_rate, "episodes"),
+                "success with": rate_cell(pair.right_rate, "episodes"),
                 "instances": pair.units,
                 "without [s]": f"{pair.left_mean:.1f}" if pair.units else "–",
                 "saved [s], mean [95 %]": f"{pair.mean:.1f} [{low:.1f}, {high:.1f}]" if pair.units else "–",

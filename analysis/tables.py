@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pandas as pd
 
-from analysis.statistics import wilson
+from analysis.statistics import Rate, wilson
 
 
 def mean_std(values: pd.Series[float], digits: int = 2) -> str:
@@ -29,6 +29,21 @@ def share(successes: int, trials: int) -> str:
     """Return a share in percent with its 95 % Wilson interval."""
     low, high = wilson(successes, trials)
     return f"{100 * successes / trials:.0f} % [{100 * low:.0f}, {100 * high:.0f}]" if trials else "–"
+
+
+RATES = (
+    "Success is the mean over instances of each one's own rate; its 95 % Wilson interval counts instances, not "
+    "episodes: seeds of one instance are not independent, and so it is conservative."
+)
+"""What `rate_cell` shows, for a table's legend."""
+
+
+def rate_cell(rate: Rate, trials: str) -> str:
+    """Return a rate with its 95 % interval, the number of instances and of trials (in words: episodes, say)."""
+    if not rate.units:
+        return "–"
+    low, high = rate.interval
+    return f"{rate.mean:.2f} [{low:.2f}, {high:.2f}] of {rate.units} ({rate.trials} {trials})"
 
 
 def ablation_table(runs: pd.DataFrame) -> pd.DataFrame:

@@ -19,8 +19,8 @@ from analysis.heatmaps import SUCCESS_COLOURS
 from analysis.report.blocks import Block, Cell, Grid, GridBlock, TableBlock
 from analysis.report.grids import Shades, variant_words
 from analysis.report.sources import Record
-from analysis.statistics import wilson
-from analysis.tables import share
+from analysis.statistics import success_rate
+from analysis.tables import rate_cell
 
 
 def execution_blocks(records: list[Record]) -> list[Block]:
@@ -74,18 +74,19 @@ def execution_headlines(records: list[Record]) -> list[str]:
     for (benchmark, policy), part in episodes.groupby(["benchmark", "policy"]):
         who = f"{str(benchmark).capitalize()}-goal episodes, policy “{policy}”"
         if part["success"].all():
-            lines.append(f"{who}: all {len(part)} succeed, in every variant ({share(len(part), len(part))}).")
+            lines.append(f"{who}: all {len(part)} succeed, in every variant ({_rate(part)}).")
             continue
-        said = [
-            f"{share(int(mine['success'].sum()), len(mine))} {variant_words(str(variant))} ({len(mine)} episodes)"
-            for variant, mine in part.groupby("variant")
-        ]
+        said = [f"{_rate(mine)} {variant_words(str(variant))}" for variant, mine in part.groupby("variant")]
         lines.append(f"{who}, success: {', '.join(said)}.")
     failures = episodes[~episodes["success"]]["failure"].value_counts()
     if len(failures):
         counted = ", ".join(f"{name} {count}" for name, count in failures.items())
         lines.append(f"{len(episodes[~episodes['success']])} of {len(episodes)} episodes failed: {counted}.")
     return lines
+
+
+def _rate(episodes: pd.DataFrame) -> str:
+    return rate_cell(success_rate(episodes, "success"), "episodes")
 
 
 def _success(episodes: pd.DataFrame) -> GridBlock:
@@ -110,9 +111,8 @@ def _success(episodes: pd.DataFrame) -> GridBlock:
                 wide=True,
             )
         )
-    frame = episodes.groupby(["benchmark", "blocks", "label", "policy", "variant"])["success"].agg(["sum", "size"])
-    shares = [share(int(good), int(total)) for good, total in zip(frame["sum"], frame["size"], strict=True)]
-    table = frame.assign(success=shares, episodes=frame["size"]).drop(columns=["sum", "size"]).reset_index()
+    by = ["benchmark", "blocks", "label", "policy", "variant"]
+    table = pd.DataFrame([(*key, _rate(part)) for key, part in episodes.groupby(by)], columns=[*by, "success"])
     return GridBlock("episode-success", "Episodes that reached their goal", "episodes", grids, table)
 
 
@@ -120,8 +120,8 @@ def _cell(part: pd.DataFrame | None, shade: Shades, who: str) -> Cell | None:
     if part is None:
         return None
     good, total = int(part["success"].sum()), len(part)
-    low, high = wilson(good, total)
+    low, high = success_rate(part, "success").interval
     first = part.iloc[0]
     words = f"{who}, {first['blocks']} blocks, {variant_words(first['variant'])}: {good} of {total} episodes succeed"
-    words += f", 95 % interval {100 * low:.0f} to {100 * high:.0f} %"
+    words += f", 95 % interval over instances {100 * low:.0f} to {100 * high:.0f} %"
     return Cell(f"{good}/{total}", *shade(good / total), words, [[int(number)] for number in part.index])

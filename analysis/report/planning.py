@@ -193,7 +193,8 @@ class Planning:
                     table,
                     "Actions without topple minus actions with it, on the instances that the same planner solved both "
                     "ways (same buffers, same seed); an instance counts once. Dots: instances; bar: 95 % bootstrap "
-                    "interval of the mean. Solved: share with its 95 % Wilson interval, over all tried both ways. "
+                    "interval of the mean. Solved: over all tried both ways, the mean of the instances' own rates with "
+                    "its 95 % Wilson interval over instances. "
                     f"“{ANY}”: no planner's figures, but the problem's own.",
                     emphasis=frozenset(i for i, e in enumerate(self.effects) if e.about["label"] == ANY),
                     pictures={"saved, mean [95 %]": pictures},

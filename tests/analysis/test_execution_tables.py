@@ -57,9 +57,19 @@ def test_the_paper_s_figures_stand_beside_ours(results):
     assert rows.loc["smash, open", "9 blocks w/ topple"] == "–"
 
 
+def test_success_counts_instances_and_says_how_many_episodes(tmp_path):
+    records = [record("a", "topple", 20.0, seed=seed) for seed in range(3)] + [
+        record("b", "topple", 5.0, success=False)
+    ]
+    (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(r) + "\n" for r in records))
+    table = metric_table(read_episodes(tmp_path), "multi").set_index(["metric", "source"])
+    assert table.loc[("Success rate", "smash, open"), "4 blocks w/ topple"] == "0.50 [0.09, 0.91] of 2 (4 episodes)"
+
+
 def test_savings_are_paired_over_instances_that_both_solved(results):
     (row,) = paired_table(read_episodes(results)).to_dict("records")
     assert row["instances"] == 2
+    assert row["success with"] == "0.67 [0.21, 0.94] of 3 (3 episodes)"
     assert row["saved [s], mean [95 %]"].startswith("6.0")
     assert row["faster, equal, slower"] == "2, 0, 0"
     assert row["the paper [%]"] == "13"
