@@ -23,29 +23,47 @@ from analysis.tables import RATES, markdown, rate_cell
 
 TRIAL_FORMAT = "smash-topple-trial/1"
 DEFAULT = "default"
+SETTING = ["benchmark", "blocks", "label", "variant", "policy"]
+"""What episodes have in common that are compared between scenes."""
 LEGEND = (
     f"Scenes differ in the friction of blocks on blocks (in their names; `default` is 0.20). {RATES} "
-    "Execution in simulated seconds over successful episodes, means."
+    "Scenes are compared on the same problems: actions carried out and execution (simulated seconds) are means over "
+    "instances, on the instances and seeds that are successful in all scenes; `compared on` says how many. Planned "
+    "actions are of all plans."
 )
 
 
 def scene_table(episodes: pd.DataFrame) -> pd.DataFrame:
-    """Return a row per scene, benchmark, variant and policy: success, executed actions, replans, execution time."""
+    """Return a row per scene and setting: success and replans of all episodes, means on what all scenes share."""
     rows = []
-    keys = ["scene", "benchmark", "blocks", "variant", "policy"]
+    keys = ["scene", *SETTING]
+    everywhere = good_everywhere(episodes)
     for key, group in episodes.groupby(keys, sort=True):
-        good = group[group["success"]]
+        shared = group[everywhere[group.index]]
         rows.append(
             {
                 **dict(zip(keys, key, strict=True)),
                 "success": rate_cell(success_rate(group, "success"), "episodes"),
-                "planned actions": f"{group['cost'].mean():.1f}",
-                "carried out": f"{good['executed'].mean():.1f}" if len(good) else "–",
+                "planned actions": _mean(group, "cost"),
                 "replans": int(group["replans"].sum()),
-                "execution [s]": f"{good['execution'].mean():.1f}" if len(good) else "–",
+                "compared on, instances (episodes)": f"{shared['instance'].nunique()} ({len(shared)})",
+                "carried out": _mean(shared, "executed"),
+                "execution [s]": _mean(shared, "execution"),
             }
         )
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows).rename(columns={"label": "planner"})
+
+
+def good_everywhere(episodes: pd.DataFrame) -> pd.Series[bool]:
+    """Return for each episode whether its instance and seed succeed in every scene in which its setting was tried."""
+    tried = episodes.groupby(SETTING)["scene"].transform("nunique")
+    won = episodes.assign(won=episodes["scene"].where(episodes["success"]))
+    return won.groupby([*SETTING, "instance", "seed"])["won"].transform("nunique") == tried
+
+
+def _mean(episodes: pd.DataFrame, column: str) -> str:
+    """Return the mean over instances of each one's mean over its seeds."""
+    return f"{episodes.groupby('instance')[column].mean().mean():.1f}" if len(episodes) else "–"
 
 
 def saved_table(episodes: pd.DataFrame) -> pd.DataFrame:

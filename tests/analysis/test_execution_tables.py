@@ -66,6 +66,14 @@ def test_success_counts_instances_and_says_how_many_episodes(tmp_path):
     assert table.loc[("Success rate", "smash, open"), "4 blocks w/ topple"] == "0.50 [0.09, 0.91] of 2 (4 episodes)"
 
 
+def test_actions_are_of_all_plans_and_times_of_successful_episodes(tmp_path):
+    records = [record("a", "topple", 20.0), {**record("b", "topple", 5.0, success=False), "cost": 12}]
+    (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(r) + "\n" for r in records))
+    ours = metric_table(read_episodes(tmp_path), "multi").set_index(["metric", "source"])["4 blocks w/ topple"]
+    assert ours["Number of actions", "smash, open"] == "10.00 ± 2.83 (10.00)"
+    assert ours["Execution [s]", "smash, open"] == "20.00 ± 0.00 (20.00)"
+
+
 def test_savings_are_paired_over_instances_that_both_solved(results):
     (row,) = paired_table(read_episodes(results)).to_dict("records")
     assert row["instances"] == 2
