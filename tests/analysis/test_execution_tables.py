@@ -6,9 +6,9 @@ from analysis.execution_tables import failure_table, make, metric_table, paired_
 from analysis.records import NoRecords
 
 
-def record(instance, variant, seconds, success=True, seed=0):
+def record(instance, variant, seconds, success=True, seed=0, task=0.0):
     failure = None if success else {"name": "slip", "reason": "it slipped", "step": 2, "action": ["pick", "a", "s"]}
-    times = {"offline": 0.1, "offline_cpu": 0.1, "online": 0.2, "online_cpu": 0.2, "execution": seconds, "task": 0.0}
+    times = {"offline": 0.1, "offline_cpu": 0.1, "online": 0.2, "online_cpu": 0.2, "execution": seconds, "task": task}
     episode = {
         "success": success,
         "failure": failure,
@@ -72,6 +72,18 @@ def test_actions_are_of_all_plans_and_times_of_successful_episodes(tmp_path):
     ours = metric_table(read_episodes(tmp_path), "multi").set_index(["metric", "source"])["4 blocks w/ topple"]
     assert ours["Number of actions", "smash, open"] == "10.00 ± 2.83 (10.00)"
     assert ours["Execution [s]", "smash, open"] == "20.00 ± 0.00 (20.00)"
+
+
+def test_replanning_stands_beside_execution_and_the_paper_has_none(tmp_path):
+    records = [record("a", "topple", 20.0, task=1.5), record("b", "topple", 20.0), record("a", "no-topple", 30.0)]
+    (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(r) + "\n" for r in records))
+    episodes = read_episodes(tmp_path)
+    rows = metric_table(episodes, "multi").set_index(["metric", "source"])["4 blocks w/ topple"]
+    assert rows["Replanning [s]", "paper"] == "–"
+    assert rows["Replanning [s]", "smash, open"] == "0.75 ± 1.06 (0.75)"
+    assert paired_table(episodes)["replanning without, with [s]"].tolist() == ["0.00, 1.50"]
+    make(tmp_path, tmp_path)
+    assert r"Replanning [s] & paper & -- & --" in (tmp_path / "table-multi.tex").read_text()
 
 
 def test_savings_are_paired_over_instances_that_both_solved(results):
