@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from analysis.execution_tables import WITHOUT, paired_table, read_episodes
 from analysis.records import NoRecords, read_lines
 from analysis.statistics import success_rate, wilson
-from analysis.tables import RATES, markdown, rate_cell
+from analysis.tables import RATES, SPREADS, markdown, rate_cell
 
 TRIAL_FORMAT = "smash-topple-trial/1"
 DEFAULT = "default"
@@ -155,7 +155,7 @@ def make(results: Path, maps: Sequence[Path], out: Path) -> list[Path]:
     parts = ["# Friction\n", f"{len(episodes)} episodes. {LEGEND}\n", markdown(scene_table(episodes))]
     saved = saved_table(episodes)
     if len(saved):
-        parts += ["## Execution time saved by topple, paired by instance\n", markdown(saved)]
+        parts += ["## Execution time saved by topple, paired by instance\n", f"{SPREADS}\n", markdown(saved)]
     files = [out / "sweeps.md"]
     if maps:
         trials = read_trials(maps)

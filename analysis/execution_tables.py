@@ -12,7 +12,7 @@ import pandas as pd
 from analysis.paper_tables import METRICS, PAPER, SIZES, Metric
 from analysis.records import NoRecords, read_lines
 from analysis.statistics import paired, success_rate
-from analysis.tables import RATES, latex, markdown, mean_std, rate_cell
+from analysis.tables import RATES, SPREADS, latex, markdown, mean_std, rate_cell, with_spread
 
 FORMAT = "smash-episode-run/1"
 TIMES = ("offline", "offline_cpu", "online", "online_cpu", "execution", "task")
@@ -127,7 +127,6 @@ def paired_table(episodes: pd.DataFrame) -> pd.DataFrame:
             continue
         pair = paired(without[tuple(key)], part, problem, ["instance"], "execution")
         replanning = paired(without[tuple(key)], part, problem, ["instance"], "task")
-        low, high = pair.interval
         benchmark, blocks, label, policy = key
         rows.append(
             {
@@ -140,7 +139,7 @@ def paired_table(episodes: pd.DataFrame) -> pd.DataFrame:
                 "success with": rate_cell(pair.right_rate, "episodes"),
                 "instances": pair.units,
                 "without [s]": f"{pair.left_mean:.1f}" if pair.units else "–",
-                "saved [s], mean [95 %]": f"{pair.mean:.1f} [{low:.1f}, {high:.1f}]" if pair.units else "–",
+                "saved [s], mean [95 %] (range)": with_spread(pair.mean, pair.interval, pair.units),
                 "saved [%]": f"{100 * (1 - 1 / pair.ratio):.0f}" if pair.ratio > 0 else "–",
                 "replanning without, with [s]": f"{replanning.left_mean:.2f}, {replanning.right_mean:.2f}"
                 if replanning.units
@@ -216,7 +215,8 @@ def make(results: Path, out: Path) -> list[Path]:
         files.append(out / f"table-{benchmark}.tex")
         files[-1].write_text(latex(table, title, f"tab:{benchmark}"), encoding="utf-8")
     paired, failed = paired_table(episodes), failure_table(episodes)
-    parts += ["## Execution time saved by topple, paired by instance\n", markdown(paired)] if len(paired) else []
+    if len(paired):
+        parts += ["## Execution time saved by topple, paired by instance\n", f"{SPREADS}\n", markdown(paired)]
     slower = slower_table(episodes)
     parts += [f"## Where topple took longer: {len(slower)} pairs\n", markdown(slower)] if len(slower) else []
     parts += ["## Failures\n", markdown(failed) if len(failed) else "None.\n"]

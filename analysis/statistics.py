@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+FEWEST_UNITS = 8
+"""Below so many units a percentile bootstrap covers far less than 95 %: their range is given instead, and called so."""
 RESAMPLES = 5000
 """Draws of a bootstrap: the interval's ends then move by less than the digits that are shown."""
 
@@ -68,18 +70,32 @@ def success_rate(trials: pd.DataFrame, success: str, unit: Sequence[str] = ("ins
 
 
 def bootstrap(values: Values, seed: int = 0) -> tuple[float, float]:
-    """Return the 95 % percentile bootstrap interval of the mean of `values` (n,); (nan, nan) without a value."""
+    """Return the 95 % percentile bootstrap interval of the mean of `values` (n,); (nan, nan) without a value.
+
+    Below `FEWEST_UNITS` values it is their range.
+    """
     return _interval(len(values), lambda drawn: values[drawn].mean(axis=1), seed)
 
 
 def bootstrap_ratio(above: Values, below: Values, seed: int = 0) -> tuple[float, float]:
-    """Return the 95 % interval of sum(above) / sum(below), pairs (n,) and (n,) drawn together."""
+    """Return the 95 % interval of sum(above) / sum(below), pairs (n,) and (n,) drawn together.
+
+    Below `FEWEST_UNITS` pairs it is the range of their ratios.
+    """
     return _interval(len(above), lambda drawn: above[drawn].sum(axis=1) / below[drawn].sum(axis=1), seed)
+
+
+def is_range(units: int) -> bool:
+    """Return whether what `bootstrap` gives for so many units is their range, not an interval of the mean."""
+    return units < FEWEST_UNITS
 
 
 def _interval(count: int, statistic: Callable[[np.ndarray[Any, Any]], Values], seed: int) -> tuple[float, float]:
     if count == 0:
         return nan, nan
+    if is_range(count):
+        each = statistic(np.arange(count)[:, None])
+        return float(each.min()), float(each.max())
     drawn = np.random.default_rng(seed).integers(0, count, (RESAMPLES, count))
     low, high = np.percentile(statistic(drawn), [2.5, 97.5])
     return float(low), float(high)
@@ -94,9 +110,10 @@ class Paired:
         units: What the figures below count: instances on which both sides solved something in common.
         differences: left - right, one a unit (n,): the mean over the unit's common problems (seeds, say).
         left_mean: Mean of the left side over the units; `right_mean` likewise: the same problems on both sides.
-        interval: 95 % bootstrap interval of the mean difference, units drawn.
+        interval: 95 % bootstrap interval of the mean difference, units drawn; of few units the range (`is_range`).
         ratio: left_mean / right_mean, nan where right_mean is 0.
-        ratio_interval: its 95 % bootstrap interval; nan where a unit of the right side is 0.
+        ratio_interval: its 95 % bootstrap interval, of few units the range of their ratios; nan where a unit of the
+            right side is 0.
     """
 
     left_rate: Rate
@@ -122,14 +139,6 @@ class Paired:
     def mean(self) -> float:
         """Mean difference; nan without a common unit."""
         return float(self.differences.mean()) if self.units else nan
-
-    @property
-    def quartiles(self) -> tuple[float, float, float]:
-        """First quartile, median and third quartile of the differences; nan without a common unit."""
-        if not self.units:
-            return nan, nan, nan
-        low, middle, high = np.percentile(self.differences, [25, 50, 75])
-        return float(low), float(middle), float(high)
 
     @property
     def tally(self) -> tuple[int, int, int]:

@@ -20,7 +20,7 @@ from analysis.report.blocks import Block, Cell, Grid, GridBlock, TableBlock
 from analysis.report.grids import Shades, variant_words
 from analysis.report.sources import Record
 from analysis.statistics import success_rate
-from analysis.tables import rate_cell
+from analysis.tables import SPREADS, rate_cell
 
 
 def execution_blocks(records: list[Record]) -> list[Block]:
@@ -36,7 +36,7 @@ def execution_blocks(records: list[Record]) -> list[Block]:
     if len(saved):
         note = (
             "Without minus with, on the instances and seeds that the same planner and policy carried out both ways; an "
-            "instance counts once. Success is over all that were tried both ways."
+            f"instance counts once. Success is over all that were tried both ways. {SPREADS}"
         )
         blocks.append(TableBlock("execution-saved", "Execution time saved by topple, paired by instance", saved, note))
     failed = failure_table(episodes)

@@ -90,7 +90,7 @@ def test_savings_are_paired_over_instances_that_both_solved(results):
     (row,) = paired_table(read_episodes(results)).to_dict("records")
     assert row["instances"] == 2
     assert row["success with"] == "0.67 [0.21, 0.94] of 3 (3 episodes)"
-    assert row["saved [s], mean [95 %]"].startswith("6.0")
+    assert row["saved [s], mean [95 %] (range)"] == "6.0 (2.0 to 10.0)"
     assert row["faster, equal, slower"] == "2, 0, 0"
     assert row["the paper [%]"] == "13"
 
