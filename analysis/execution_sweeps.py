@@ -47,8 +47,8 @@ def scene_table(episodes: pd.DataFrame) -> pd.DataFrame:
                 "planned actions": _mean(group, "cost"),
                 "replans": int(group["replans"].sum()),
                 "compared on, instances (episodes)": f"{shared['instance'].nunique()} ({len(shared)})",
-                "carried out": _mean(shared, "executed"),
-                "execution [s]": _mean(shared, "execution"),
+                "carried out": _mean(shared, "actions_executed"),
+                "execution [s]": _mean(shared, "execution_seconds"),
             }
         )
     return pd.DataFrame(rows).rename(columns={"label": "planner"})

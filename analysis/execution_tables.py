@@ -9,13 +9,12 @@ from typing import Any
 
 import pandas as pd
 
+from analysis.episodes import EPISODE_FORMAT, EPISODES, episodes_table
 from analysis.paper_tables import METRICS, PAPER, SIZES, Metric
 from analysis.records import NoRecords, read_lines
 from analysis.statistics import paired, success_rate
 from analysis.tables import RATES, SPREADS, latex, markdown, mean_std, rate_cell, with_spread
 
-FORMAT = "smash-episode-run/1"
-TIMES = ("offline", "offline_cpu", "online", "online_cpu", "execution", "task")
 LEGEND = (
     f"Cells: mean ± std (median) over instances; the paper: mean ± std. {RATES} "
     "Number of actions, initial TP time and depth are of all plans, whether or not they were carried out to the end; "
@@ -30,43 +29,29 @@ VARIANTS = {"topple": "w/ topple", "max-topple-4": "w/ topple ≤ 4", WITHOUT: "
 
 
 def read_episodes(results: Path) -> pd.DataFrame:
-    """Return `episode_table` of `RESULTS/episodes.jsonl`.
+    """Return `told_episodes` of `RESULTS/episodes.jsonl`.
 
     Raises:
         NoRecords: where there are none.
     """
-    path = results / "episodes.jsonl"
-    records = read_lines(path, FORMAT)
+    records = read_lines(results / EPISODES, EPISODE_FORMAT)
     if not records:
-        raise NoRecords(f"{path}: no finished episode")
-    return episode_table(records)
+        raise NoRecords(f"{results / EPISODES}: no finished episode")
+    return told_episodes(records)
 
 
-def episode_table(records: list[dict[str, Any]]) -> pd.DataFrame:
-    """Return one row an episode.
+def told_episodes(records: list[dict[str, Any]]) -> pd.DataFrame:
+    """Return `analysis.episodes.episodes_table` with `benchmark` (single or multi), and a failure for every loss.
 
-    Columns: those of the record that are plain values, and `benchmark` (single or multi), `success`, `failure` (name),
-    those of `TIMES` [s], `replans`, `retries`, `executed` (actions carried out).
+    An episode whose process ended without one has failure `crashed`, and the process's problem for a reason.
     """
-    return pd.DataFrame([_row(record) for record in records])
-
-
-def _row(record: dict[str, Any]) -> dict[str, Any]:
-    plain = {key: value for key, value in record.items() if not isinstance(value, (dict, list))}
-    episode = record["episode"] or {}
-    failure = episode.get("failure") or {}
-    times = episode.get("times") or {}
-    return {
-        **plain,
-        "benchmark": str(record["suite"]).split("-")[0],
-        "success": bool(episode.get("success", False)),
-        "failure": failure.get("name") or ("" if episode.get("success") else "crashed"),
-        "reason": failure.get("reason") or record["problem"],
-        "executed": episode.get("actions_executed"),
-        "replans": episode.get("replans"),
-        "retries": episode.get("retries"),
-        **{name: times.get(name) for name in TIMES},
-    }
+    episodes = episodes_table(records)
+    lost = episodes["failure"].isna() & ~episodes["success"]
+    return episodes.assign(
+        benchmark=episodes["suite"].str.split("-").str[0],
+        failure=episodes["failure"].mask(lost, "crashed"),
+        failure_reason=episodes["failure_reason"].mask(lost, episodes["problem"]),
+    )
 
 
 def metric_table(episodes: pd.DataFrame, benchmark: str) -> pd.DataFrame:
@@ -118,15 +103,15 @@ def paired_table(episodes: pd.DataFrame) -> pd.DataFrame:
     The mean times of replanning on the same pairs stand beside it: execution is simulated and does not hold them.
     """
     setting, problem = ["benchmark", "blocks", "label", "policy"], ["instance", "seed"]
-    columns = ["execution", "task"]
+    columns = ["execution_seconds", "task_seconds"]
     done = episodes.assign(solved=episodes["success"])[[*setting, *problem, "variant", "solved", *columns]]
     without = dict(list(done[done["variant"] == WITHOUT].groupby(setting)))
     rows = []
     for (variant, *key), part in done[done["variant"] != WITHOUT].groupby(["variant", *setting]):
         if tuple(key) not in without:
             continue
-        pair = paired(without[tuple(key)], part, problem, ["instance"], "execution")
-        replanning = paired(without[tuple(key)], part, problem, ["instance"], "task")
+        pair = paired(without[tuple(key)], part, problem, ["instance"], "execution_seconds")
+        replanning = paired(without[tuple(key)], part, problem, ["instance"], "task_seconds")
         benchmark, blocks, label, policy = key
         rows.append(
             {
@@ -163,24 +148,28 @@ def _paper_saved(benchmark: str, blocks: int) -> str:
 def slower_table(episodes: pd.DataFrame) -> pd.DataFrame:
     """Return the pairs in which topple took longer, worst first, with what each side planned and carried out."""
     keys = ["label", "policy", "instance", "seed"]
-    columns = ["variant", *keys, "cost", "executed", "replans", "execution"]
+    columns = ["variant", *keys, "cost", "actions_executed", "replans", "execution_seconds"]
     done = episodes[episodes["success"]][columns]
     sides = done[done["variant"] != WITHOUT].merge(
         done[done["variant"] == WITHOUT].drop(columns="variant"), on=keys, suffixes=("", "_without")
     )
-    sides["lost"] = sides["execution"] - sides["execution_without"]
+    sides["lost"] = sides["execution_seconds"] - sides["execution_seconds_without"]
     worst = sides[sides["lost"] > 0].sort_values("lost", ascending=False)
     return pd.DataFrame(
         {
             **{column: worst[column] for column in ("instance", "seed", "label", "variant", "policy")},
             "lost [s]": worst["lost"].map("{:.1f}".format),
-            "with [s]": worst["execution"].map("{:.1f}".format),
-            "without [s]": worst["execution_without"].map("{:.1f}".format),
-            "planned with, without": [f"{a}, {b}" for a, b in zip(worst["cost"], worst["cost_without"], strict=True)],
-            "carried out": [f"{a}, {b}" for a, b in zip(worst["executed"], worst["executed_without"], strict=True)],
-            "replans": [f"{a}, {b}" for a, b in zip(worst["replans"], worst["replans_without"], strict=True)],
+            "with [s]": worst["execution_seconds"].map("{:.1f}".format),
+            "without [s]": worst["execution_seconds_without"].map("{:.1f}".format),
+            "planned with, without": _both(worst, "cost"),
+            "carried out": _both(worst, "actions_executed"),
+            "replans": _both(worst, "replans"),
         }
     )
+
+
+def _both(sides: pd.DataFrame, column: str) -> list[str]:
+    return [f"{a}, {b}" for a, b in zip(sides[column], sides[f"{column}_without"], strict=True)]
 
 
 def failure_table(episodes: pd.DataFrame) -> pd.DataFrame:
@@ -190,7 +179,7 @@ def failure_table(episodes: pd.DataFrame) -> pd.DataFrame:
     rows = []
     for key, group in failed.groupby(columns):
         first = group.iloc[0]
-        example = f"{first['instance']} seed {first['seed']}: {first['reason']}"
+        example = f"{first['instance']} seed {first['seed']}: {first['failure_reason']}"
         rows.append({**dict(zip(columns, key, strict=True)), "episodes": len(group), "example": example})
     return pd.DataFrame(rows, columns=[*columns, "episodes", "example"])
 

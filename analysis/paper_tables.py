@@ -32,10 +32,10 @@ METRICS = (
     Metric("success", "Success rate", "success", 2),
     Metric("actions", "Number of actions", "cost", 2, of_plan=True),
     Metric("first", "Initial TP time [s]", "first_plan_seconds", 3, of_plan=True),
-    Metric("offline", "Offline MP time [s]", "offline_cpu", 2),
-    Metric("online", "Online MP time [s]", "online_cpu", 2, ("multi",)),
-    Metric("replanning", "Replanning [s]", "task", 2),
-    Metric("execution", "Execution [s]", "execution", 2),
+    Metric("offline", "Offline MP time [s]", "offline_cpu_seconds", 2),
+    Metric("online", "Online MP time [s]", "online_cpu_seconds", 2, ("multi",)),
+    Metric("replanning", "Replanning [s]", "task_seconds", 2),
+    Metric("execution", "Execution [s]", "execution_seconds", 2),
     Metric("depth", "Goal object depth", "depth", 2, ("single",), of_plan=True),
 )
 

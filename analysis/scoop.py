@@ -71,7 +71,7 @@ def _answer(run: dict[str, Any]) -> str:
 def _carried_out(episodes: pd.DataFrame, variant: str) -> dict[str, str]:
     """Return the columns of a variant's episodes, of `episodes` of one instance and policy."""
     tried, good = episodes[episodes["variant"] == variant], episodes[episodes["success"]]
-    part, base = (good[good["variant"] == name].set_index("seed")["execution"] for name in (variant, BASELINE))
+    part, base = (good[good["variant"] == name].set_index("seed")["execution_seconds"] for name in (variant, BASELINE))
     return {
         "execution [s]": _mean(part),
         "saved [%]": _saved(part, base) if variant != BASELINE else "–",

@@ -10,10 +10,10 @@ from analysis.execution_tables import (
     BENCHMARKS,
     LEGEND,
     VARIANTS,
-    episode_table,
     failure_table,
     metric_table,
     paired_table,
+    told_episodes,
 )
 from analysis.heatmaps import SUCCESS_COLOURS
 from analysis.report.blocks import Block, Cell, Grid, GridBlock, TableBlock
@@ -25,7 +25,7 @@ from analysis.tables import SPREADS, rate_cell
 
 def execution_blocks(records: list[Record]) -> list[Block]:
     """Return success as grids, the paper's tables with ours, execution time saved, and the failures."""
-    episodes = _by_scene(episode_table(records))
+    episodes = _by_scene(told_episodes(records))
     blocks: list[Block] = [_success(episodes)]
     for benchmark, title in BENCHMARKS.items():
         if (episodes["benchmark"] == benchmark).any():
@@ -52,7 +52,7 @@ def execution_blocks(records: list[Record]) -> list[Block]:
 
 def _by_scene(episodes: pd.DataFrame) -> pd.DataFrame:
     """Return the episodes with their scene beside the policy where there are several: no figure is over two scenes."""
-    scenes = episodes["scene"].fillna("default") if "scene" in episodes else pd.Series("default", index=episodes.index)
+    scenes = episodes["scene"].fillna("default")
     return episodes.assign(policy=episodes["policy"] + ", " + scenes) if scenes.nunique() > 1 else episodes
 
 
@@ -69,7 +69,7 @@ def _failed(episodes: pd.DataFrame, row: dict[Hashable, object]) -> list[int]:
 
 def execution_headlines(records: list[Record]) -> list[str]:
     """Return success rates by policy and variant, and the time that topple saves, a sentence each."""
-    episodes = _by_scene(episode_table(records))
+    episodes = _by_scene(told_episodes(records))
     lines = []
     for (benchmark, policy), part in episodes.groupby(["benchmark", "policy"]):
         who = f"{str(benchmark).capitalize()}-goal episodes, policy “{policy}”"

@@ -49,7 +49,7 @@ def test_scenes_are_compared_on_what_is_successful_in_all_of_them(results):
     hard = {"instance": "a", "variant": "topple", "scene": "friction-0.40"}
     lost = pd.concat([episodes[name] == value for name, value in hard.items()], axis=1).all(axis=1)
     episodes.loc[lost, "success"] = False
-    episodes.loc[episodes["instance"] == "b", "execution"] += 1.0
+    episodes.loc[episodes["instance"] == "b", "execution_seconds"] += 1.0
     table = scene_table(episodes).set_index(["scene", "variant"])
     assert table["compared on, instances (episodes)"].tolist() == ["2 (2)", "1 (1)"] * 2
     assert table.loc[("default", "topple"), "execution [s]"] == "21.0"

@@ -32,6 +32,11 @@ def record(instance, variant, seconds, success=True, seed=0, task=0.0):
         "first_plan_seconds": 0.01,
         "episode": episode,
         "problem": "",
+        "started": "2026-01-01T00:00:00.000+00:00",
+        "load_average": [0.1, 0.2],
+        "commit": {"hash": "c", "dirty": False},
+        "machine": {"processor": "p"},
+        "versions": {},
     }
 
 
@@ -99,6 +104,13 @@ def test_failures_are_listed_with_an_example(results):
     (row,) = failure_table(read_episodes(results)).to_dict("records")
     assert row["failure"] == "slip"
     assert "it slipped" in row["example"]
+
+
+def test_an_episode_whose_process_ended_is_a_failure_with_the_process_s_words(tmp_path):
+    crashed = {**record("a", "topple", 0.0), "episode": None, "problem": "killed by signal 9"}
+    (tmp_path / "episodes.jsonl").write_text(json.dumps(crashed) + "\n" + json.dumps(record("b", "topple", 1.0)) + "\n")
+    (row,) = failure_table(read_episodes(tmp_path)).to_dict("records")
+    assert (row["failure"], row["example"]) == ("crashed", "a seed 0: killed by signal 9")
 
 
 def test_tables_are_written_as_markdown_and_latex(results):

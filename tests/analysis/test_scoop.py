@@ -25,7 +25,7 @@ def episode(variant, seed, execution, success=True, policy="replan"):
         "variant": variant,
         "instance": "scoop",
         "seed": seed,
-        "execution": execution,
+        "execution_seconds": execution,
         "success": success,
         "replans": 0,
     }
