@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import argparse
-import sys
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
+from analysis import command
 from analysis.episodes import EPISODE_FORMAT, EPISODES, episodes_table
 from analysis.paper_tables import METRICS, PAPER, SIZES, Metric
 from analysis.records import NoRecords, read_lines
@@ -215,15 +214,7 @@ def make(results: Path, out: Path) -> list[Path]:
 
 def main() -> None:
     """Make the tables and say where they are."""
-    parser = argparse.ArgumentParser(prog="python -m analysis.execution_tables", description=__doc__)
-    parser.add_argument("results", type=Path, help="directory with episodes.jsonl")
-    parser.add_argument("--out", type=Path, help="default: RESULTS/tables")
-    arguments = parser.parse_args()
-    try:
-        files = make(arguments.results, arguments.out or arguments.results / "tables")
-    except NoRecords as error:
-        sys.exit(f"analysis: {error}")
-    print("\n".join(str(file) for file in files))
+    command.run("execution_tables", __doc__, make, "tables")
 
 
 if __name__ == "__main__":

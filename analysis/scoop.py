@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import argparse
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from analysis import command
 from analysis.execution_tables import read_episodes
 from analysis.records import NoRecords, read_lines
 from analysis.statistics import bootstrap, bootstrap_ratio
@@ -123,15 +122,7 @@ def make(results: Path, out: Path) -> list[Path]:
 
 def main() -> None:
     """Make the table and say where it is."""
-    parser = argparse.ArgumentParser(prog="python -m analysis.scoop", description=__doc__)
-    parser.add_argument("results", type=Path, help="directory with runs.jsonl and episodes.jsonl")
-    parser.add_argument("--out", type=Path, help="default: RESULTS")
-    arguments = parser.parse_args()
-    try:
-        files = make(arguments.results, arguments.out or arguments.results)
-    except NoRecords as error:
-        sys.exit(f"analysis: {error}")
-    print("\n".join(str(file) for file in files))
+    command.run("scoop", __doc__, make)
 
 
 if __name__ == "__main__":
