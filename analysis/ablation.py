@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import argparse
 import re
-import sys
 from pathlib import Path
 
 import pandas as pd
 
+from analysis import command
 from analysis.cells import matched_cells, variant_cells
 from analysis.conditions import conditions
 from analysis.findings import findings
 from analysis.heatmaps import planner_figure
 from analysis.readings import cutoff_check, readings
-from analysis.records import NoRecords, read_records, runs_table
+from analysis.records import read_records, runs_table
 from analysis.tables import ablation_table, markdown
 
 
@@ -52,17 +51,7 @@ def _pictures(cells: pd.DataFrame, matched: pd.DataFrame, out: Path) -> list[Pat
 
 def main() -> None:
     """Make the ablation's pictures and say where they are."""
-    parser = argparse.ArgumentParser(prog="python -m analysis.ablation", description=__doc__)
-    parser.add_argument("results", type=Path, help="directory with runs.jsonl")
-    parser.add_argument("--out", type=Path, help="default: RESULTS/ablation")
-    arguments = parser.parse_args()
-    out = arguments.out or arguments.results / "ablation"
-    try:
-        files = make(arguments.results, out)
-    except NoRecords as error:
-        sys.exit(f"analysis: {error}")
-    print((out / "findings.md").read_text(encoding="utf-8"))
-    print("\n".join(str(file) for file in files))
+    command.run("ablation", __doc__, make, "ablation", shown="findings.md")
 
 
 if __name__ == "__main__":

@@ -6,18 +6,17 @@ twice: over all that the planner solved, and over the problems that every planne
 
 from __future__ import annotations
 
-import argparse
-import sys
 from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
+from analysis import command
 from analysis.conditions import conditions
 from analysis.curves import anytime_chart, coverage_chart
 from analysis.metrics import PREFIX, metric_names
-from analysis.records import NoRecords, read_records, runs_table
+from analysis.records import read_records, runs_table
 from analysis.tables import markdown, mean_std, median_iqr, share
 
 PROBLEM = ["instance_hash", "variant"]
@@ -170,17 +169,7 @@ def make(results: Path, out: Path, keys: Collection[str] | None = None) -> list[
 
 def main() -> None:
     """Make the comparison's tables and curves and say where they are."""
-    parser = argparse.ArgumentParser(prog="python -m analysis.comparison", description=__doc__)
-    parser.add_argument("results", type=Path, help="directory with runs.jsonl")
-    parser.add_argument("--out", type=Path, help="default: RESULTS/comparison")
-    arguments = parser.parse_args()
-    out = arguments.out or arguments.results / "comparison"
-    try:
-        files = make(arguments.results, out)
-    except NoRecords as error:
-        sys.exit(f"analysis: {error}")
-    print((out / "comparison.md").read_text(encoding="utf-8"))
-    print("\n".join(str(file) for file in files))
+    command.run("comparison", __doc__, make, "comparison", shown="comparison.md")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import pandas as pd
 
 from analysis.statistics import Paired, paired
-from analysis.tables import share
+from analysis.tables import median_iqr, rate_cell, with_spread
 
 WITHOUT = "no-topple"
 ANY = "proven optima, any planner"
@@ -103,14 +103,14 @@ def topple_table(effects: list[Effect]) -> pd.DataFrame:
         rows.append(
             {
                 **{names.get(name, name): value for name, value in effect.about.items()},
-                "solved without": share(pair.left_solved, pair.problems),
-                "solved with": share(pair.right_solved, pair.problems),
+                "solved without": rate_cell(pair.left_rate, "problems"),
+                "solved with": rate_cell(pair.right_rate, "problems"),
                 "common instances": pair.units,
                 "without": figure(pair.left_mean),
                 "with": figure(pair.right_mean),
-                "saved, mean [95 %]": interval(pair.mean, *pair.interval),
-                "saved, median [IQR]": interval(pair.quartiles[1], pair.quartiles[0], pair.quartiles[2], 1),
-                "ratio [95 %]": interval(pair.ratio, *pair.ratio_interval, 2),
+                "saved, mean [95 %] (range)": with_spread(pair.mean, pair.interval, pair.units),
+                "saved, median [IQR]": median_iqr(pd.Series(pair.differences), 1),
+                "ratio [95 %] (range)": with_spread(pair.ratio, pair.ratio_interval, pair.units, 2),
                 "shorter / same / longer": f"{fewer} / {equal} / {more}",
             }
         )
@@ -126,12 +126,12 @@ def planner_table(effects: list[Effect], reference: str) -> pd.DataFrame:
         rows.append(
             {
                 **effect.about,
-                "solved": share(pair.left_solved, pair.problems),
-                f"solved, {reference}": share(pair.right_solved, pair.problems),
+                "solved": rate_cell(pair.left_rate, "problems"),
+                f"solved, {reference}": rate_cell(pair.right_rate, "problems"),
                 "common instances": pair.units,
                 "actions": figure(pair.left_mean),
                 f"actions, {reference}": figure(pair.right_mean),
-                "ratio [95 %]": interval(pair.ratio, *pair.ratio_interval, 2),
+                "ratio [95 %] (range)": with_spread(pair.ratio, pair.ratio_interval, pair.units, 2),
                 "shorter / same / longer": f"{fewer} / {equal} / {more}",
             }
         )
@@ -141,10 +141,3 @@ def planner_table(effects: list[Effect], reference: str) -> pd.DataFrame:
 def figure(value: float, digits: int = 1) -> str:
     """Return a number, or a dash where there is none."""
     return "–" if pd.isna(value) else f"{value:.{digits}f}"
-
-
-def interval(value: float, low: float, high: float, digits: int = 1) -> str:
-    """Return a number with its interval, or a dash where there is none."""
-    if pd.isna(value):
-        return "–"
-    return figure(value, digits) + ("" if pd.isna(low) else f" [{low:.{digits}f}, {high:.{digits}f}]")

@@ -7,6 +7,8 @@ from typing import Any
 
 import pandas as pd
 
+from analysis.actions import ACTION_COLUMNS, named
+
 EPISODES = "episodes.jsonl"
 EPISODE_FORMAT = "smash-episode-run/1"
 TIMES = ("offline", "offline_cpu", "online", "online_cpu", "execution")
@@ -30,8 +32,7 @@ EPISODE_TYPES = {
 ACTION_TYPES = {
     "key": "string",
     "step": "int64",
-    **dict.fromkeys(("action", "block", "location"), "string"),
-    "height": "Int64",
+    **ACTION_COLUMNS,
     **dict.fromkeys(("origin", "outcome", "reason"), "string"),
     "attempts": "Int64",
     **dict.fromkeys(("gap", "repaired"), "boolean"),
@@ -74,8 +75,7 @@ def _episode_row(record: dict[str, Any]) -> dict[str, Any]:
 def actions_table(records: list[dict[str, Any]]) -> pd.DataFrame:
     """Return one row an action that an episode carried out, recovery moves included: what, how it went, its times [s].
 
-    `location` is a pick's source, a place's target or the toppled stack; `block` is null for a topple, `height` for the
-    others.
+    `analysis.actions` says what the columns of an action hold.
     """
     rows = []
     for record in records:
@@ -85,19 +85,12 @@ def actions_table(records: list[dict[str, Any]]) -> pd.DataFrame:
                 {
                     **{name: performed.get(name) for name in ACTION_TYPES},
                     "key": record["key"],
-                    **_named(performed["action"]),
+                    **named(performed["action"]),
                     "begun_seconds": performed.get("begun"),
                     **{f"{name}_seconds": times.get(name) for name in TIMES},
                 }
             )
     return _typed(rows, ACTION_TYPES)
-
-
-def _named(action: list[str | int]) -> dict[str, Any]:
-    name, first, second = action
-    if name == "topple":
-        return {"action": name, "block": None, "location": first, "height": second}
-    return {"action": name, "block": first, "location": second, "height": None}
 
 
 def _typed(rows: list[dict[str, Any]], types: dict[str, str]) -> pd.DataFrame:

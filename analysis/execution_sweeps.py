@@ -18,35 +18,52 @@ from matplotlib.figure import Figure
 
 from analysis.execution_tables import WITHOUT, paired_table, read_episodes
 from analysis.records import NoRecords, read_lines
-from analysis.statistics import wilson
-from analysis.tables import markdown
+from analysis.statistics import success_rate, wilson
+from analysis.tables import RATES, SPREADS, markdown, rate_cell
 
 TRIAL_FORMAT = "smash-topple-trial/1"
 DEFAULT = "default"
+SETTING = ["benchmark", "blocks", "label", "variant", "policy"]
+"""What episodes have in common that are compared between scenes."""
 LEGEND = (
-    "Scenes differ in the friction of blocks on blocks (in their names; `default` is 0.20). Success with its 95 % "
-    "Wilson interval; execution in simulated seconds over successful episodes, means."
+    f"Scenes differ in the friction of blocks on blocks (in their names; `default` is 0.20). {RATES} "
+    "Scenes are compared on the same problems: actions carried out and execution (simulated seconds) are means over "
+    "instances, on the instances and seeds that are successful in all scenes; `compared on` says how many. Planned "
+    "actions are of all plans."
 )
 
 
 def scene_table(episodes: pd.DataFrame) -> pd.DataFrame:
-    """Return a row per scene, benchmark, variant and policy: success, executed actions, replans, execution time."""
+    """Return a row per scene and setting: success and replans of all episodes, means on what all scenes share."""
     rows = []
-    keys = ["scene", "benchmark", "blocks", "variant", "policy"]
+    keys = ["scene", *SETTING]
+    everywhere = good_everywhere(episodes)
     for key, group in episodes.groupby(keys, sort=True):
-        low, high = wilson(int(group["success"].sum()), len(group))
-        good = group[group["success"]]
+        shared = group[everywhere[group.index]]
         rows.append(
             {
                 **dict(zip(keys, key, strict=True)),
-                "success": f"{group['success'].mean():.2f} [{low:.2f}, {high:.2f}] of {len(group)}",
-                "planned actions": f"{group['cost'].mean():.1f}",
-                "carried out": f"{good['executed'].mean():.1f}" if len(good) else "–",
+                "success": rate_cell(success_rate(group, "success"), "episodes"),
+                "planned actions": _mean(group, "cost"),
                 "replans": int(group["replans"].sum()),
-                "execution [s]": f"{good['execution'].mean():.1f}" if len(good) else "–",
+                "compared on, instances (episodes)": f"{shared['instance'].nunique()} ({len(shared)})",
+                "carried out": _mean(shared, "actions_executed"),
+                "execution [s]": _mean(shared, "execution_seconds"),
             }
         )
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows).rename(columns={"label": "planner"})
+
+
+def good_everywhere(episodes: pd.DataFrame) -> pd.Series[bool]:
+    """Return for each episode whether its instance and seed succeed in every scene in which its setting was tried."""
+    tried = episodes.groupby(SETTING)["scene"].transform("nunique")
+    won = episodes.assign(won=episodes["scene"].where(episodes["success"]))
+    return won.groupby([*SETTING, "instance", "seed"])["won"].transform("nunique") == tried
+
+
+def _mean(episodes: pd.DataFrame, column: str) -> str:
+    """Return the mean over instances of each one's mean over its seeds."""
+    return f"{episodes.groupby('instance')[column].mean().mean():.1f}" if len(episodes) else "–"
 
 
 def saved_table(episodes: pd.DataFrame) -> pd.DataFrame:
@@ -138,7 +155,7 @@ def make(results: Path, maps: Sequence[Path], out: Path) -> list[Path]:
     parts = ["# Friction\n", f"{len(episodes)} episodes. {LEGEND}\n", markdown(scene_table(episodes))]
     saved = saved_table(episodes)
     if len(saved):
-        parts += ["## Execution time saved by topple, paired by instance\n", markdown(saved)]
+        parts += ["## Execution time saved by topple, paired by instance\n", f"{SPREADS}\n", markdown(saved)]
     files = [out / "sweeps.md"]
     if maps:
         trials = read_trials(maps)

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-import argparse
-import sys
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
+from analysis import command
+from analysis.episodes import EPISODE_FORMAT, EPISODES, episodes_table
 from analysis.paper_tables import METRICS, PAPER, SIZES, Metric
 from analysis.records import NoRecords, read_lines
-from analysis.statistics import paired, wilson
-from analysis.tables import latex, markdown, mean_std, share
+from analysis.statistics import paired, success_rate
+from analysis.tables import RATES, SPREADS, latex, markdown, mean_std, rate_cell, with_spread
 
-FORMAT = "smash-episode-run/1"
-TIMES = ("offline", "offline_cpu", "online", "online_cpu", "execution", "task")
 LEGEND = (
-    "Cells: mean ± std (median) over instances; success with its 95 % Wilson interval; the paper: mean ± std. "
-    "Times of motion planning (MP) are by the planning thread's clock, so that other work on the machine does not "
-    "count; those of task planning (TP) are by the wall's clock."
+    f"Cells: mean ± std (median) over instances; the paper: mean ± std. {RATES} "
+    "Number of actions, initial TP time and depth are of all plans, whether or not they were carried out to the end; "
+    "the other times are over successful episodes alone. Times of motion planning (MP) are by the planning thread's "
+    "clock, so that other work on the machine does not count; those of task planning (TP) are by the wall's clock, and "
+    "so is replanning: the planner's time during an episode, which execution (simulated) does not hold."
 )
 BENCHMARKS = {"single": "Table I: single-goal rearrangement", "multi": "Table II: multi-goal rearrangement"}
 WITHOUT = "no-topple"
@@ -28,50 +28,36 @@ VARIANTS = {"topple": "w/ topple", "max-topple-4": "w/ topple ≤ 4", WITHOUT: "
 
 
 def read_episodes(results: Path) -> pd.DataFrame:
-    """Return `episode_table` of `RESULTS/episodes.jsonl`.
+    """Return `told_episodes` of `RESULTS/episodes.jsonl`.
 
     Raises:
         NoRecords: where there are none.
     """
-    path = results / "episodes.jsonl"
-    records = read_lines(path, FORMAT)
+    records = read_lines(results / EPISODES, EPISODE_FORMAT)
     if not records:
-        raise NoRecords(f"{path}: no finished episode")
-    return episode_table(records)
+        raise NoRecords(f"{results / EPISODES}: no finished episode")
+    return told_episodes(records)
 
 
-def episode_table(records: list[dict[str, Any]]) -> pd.DataFrame:
-    """Return one row an episode.
+def told_episodes(records: list[dict[str, Any]]) -> pd.DataFrame:
+    """Return `analysis.episodes.episodes_table` with `benchmark` (single or multi), and a failure for every loss.
 
-    Columns: those of the record that are plain values, and `benchmark` (single or multi), `success`, `failure` (name),
-    those of `TIMES` [s], `replans`, `retries`, `executed` (actions carried out).
+    An episode whose process ended without one has failure `crashed`, and the process's problem for a reason.
     """
-    return pd.DataFrame([_row(record) for record in records])
-
-
-def _row(record: dict[str, Any]) -> dict[str, Any]:
-    plain = {key: value for key, value in record.items() if not isinstance(value, (dict, list))}
-    episode = record["episode"] or {}
-    failure = episode.get("failure") or {}
-    times = episode.get("times") or {}
-    return {
-        **plain,
-        "benchmark": str(record["suite"]).split("-")[0],
-        "success": bool(episode.get("success", False)),
-        "failure": failure.get("name") or ("" if episode.get("success") else "crashed"),
-        "reason": failure.get("reason") or record["problem"],
-        "executed": episode.get("actions_executed"),
-        "replans": episode.get("replans"),
-        "retries": episode.get("retries"),
-        **{name: times.get(name) for name in TIMES},
-    }
+    episodes = episodes_table(records)
+    lost = episodes["failure"].isna() & ~episodes["success"]
+    return episodes.assign(
+        benchmark=episodes["suite"].str.split("-").str[0],
+        failure=episodes["failure"].mask(lost, "crashed"),
+        failure_reason=episodes["failure_reason"].mask(lost, episodes["problem"]),
+    )
 
 
 def metric_table(episodes: pd.DataFrame, benchmark: str) -> pd.DataFrame:
     """Return the table of one benchmark: a row per metric and source (ours by planner and policy, the paper).
 
-    A column per number of blocks and variant. Times and numbers of actions are over successful episodes, each instance
-    counted once (the mean over its seeds).
+    A column per number of blocks and variant. What tells of plans is over all of them, times are over successful
+    episodes; each instance counts once (the mean over its seeds).
     """
     part = episodes[episodes["benchmark"] == benchmark]
     variants = [variant for variant in VARIANTS if variant in set(part["variant"])]
@@ -79,7 +65,7 @@ def metric_table(episodes: pd.DataFrame, benchmark: str) -> pd.DataFrame:
     for metric in METRICS:
         if benchmark not in metric.benchmarks:
             continue
-        figures = PAPER[benchmark][metric.name]
+        figures = PAPER[benchmark].get(metric.name, {})
         row = {"metric": metric.title, "source": "paper"}
         for index, size in enumerate(SIZES):
             row |= {_column(size, variant): figures.get(variant, ("–",) * 3)[index] for variant in variants}
@@ -102,9 +88,8 @@ def _cell(group: pd.DataFrame, metric: Metric) -> str:
     if group.empty:
         return "–"
     if metric.name == "success":
-        low, high = wilson(int(group["success"].sum()), len(group))
-        return f"{group['success'].mean():.2f} [{low:.2f}, {high:.2f}] of {len(group)}"
-    values = group if metric.column in ("depth", "first_plan_seconds") else group[group["success"]]
+        return rate_cell(success_rate(group, "success"), "episodes")
+    values = group if metric.of_plan else group[group["success"]]
     each = values.groupby("instance")[metric.column].mean().dropna()
     if each.empty:
         return "–"
@@ -112,16 +97,20 @@ def _cell(group: pd.DataFrame, metric: Metric) -> str:
 
 
 def paired_table(episodes: pd.DataFrame) -> pd.DataFrame:
-    """Return execution time saved by topple: paired by instance, seed, planner and policy, both successful."""
+    """Return execution time saved by topple: paired by instance, seed, planner and policy, both successful.
+
+    The mean times of replanning on the same pairs stand beside it: execution is simulated and does not hold them.
+    """
     setting, problem = ["benchmark", "blocks", "label", "policy"], ["instance", "seed"]
-    done = episodes.assign(solved=episodes["success"])[[*setting, *problem, "variant", "solved", "execution"]]
+    columns = ["execution_seconds", "task_seconds"]
+    done = episodes.assign(solved=episodes["success"])[[*setting, *problem, "variant", "solved", *columns]]
     without = dict(list(done[done["variant"] == WITHOUT].groupby(setting)))
     rows = []
     for (variant, *key), part in done[done["variant"] != WITHOUT].groupby(["variant", *setting]):
         if tuple(key) not in without:
             continue
-        pair = paired(without[tuple(key)], part, problem, ["instance"], "execution")
-        low, high = pair.interval
+        pair = paired(without[tuple(key)], part, problem, ["instance"], "execution_seconds")
+        replanning = paired(without[tuple(key)], part, problem, ["instance"], "task_seconds")
         benchmark, blocks, label, policy = key
         rows.append(
             {
@@ -130,12 +119,15 @@ def paired_table(episodes: pd.DataFrame) -> pd.DataFrame:
                 "planner": label,
                 "variant": variant,
                 "policy": policy,
-                "success without": share(pair.left_solved, pair.problems),
-                "success with": share(pair.right_solved, pair.problems),
+                "success without": rate_cell(pair.left_rate, "episodes"),
+                "success with": rate_cell(pair.right_rate, "episodes"),
                 "instances": pair.units,
                 "without [s]": f"{pair.left_mean:.1f}" if pair.units else "–",
-                "saved [s], mean [95 %]": f"{pair.mean:.1f} [{low:.1f}, {high:.1f}]" if pair.units else "–",
+                "saved [s], mean [95 %] (range)": with_spread(pair.mean, pair.interval, pair.units),
                 "saved [%]": f"{100 * (1 - 1 / pair.ratio):.0f}" if pair.ratio > 0 else "–",
+                "replanning without, with [s]": f"{replanning.left_mean:.2f}, {replanning.right_mean:.2f}"
+                if replanning.units
+                else "–",
                 "the paper [%]": _paper_saved(str(benchmark), int(str(blocks))),
                 "faster, equal, slower": ", ".join(map(str, pair.tally)),
             }
@@ -155,24 +147,28 @@ def _paper_saved(benchmark: str, blocks: int) -> str:
 def slower_table(episodes: pd.DataFrame) -> pd.DataFrame:
     """Return the pairs in which topple took longer, worst first, with what each side planned and carried out."""
     keys = ["label", "policy", "instance", "seed"]
-    columns = ["variant", *keys, "cost", "executed", "replans", "execution"]
+    columns = ["variant", *keys, "cost", "actions_executed", "replans", "execution_seconds"]
     done = episodes[episodes["success"]][columns]
     sides = done[done["variant"] != WITHOUT].merge(
         done[done["variant"] == WITHOUT].drop(columns="variant"), on=keys, suffixes=("", "_without")
     )
-    sides["lost"] = sides["execution"] - sides["execution_without"]
+    sides["lost"] = sides["execution_seconds"] - sides["execution_seconds_without"]
     worst = sides[sides["lost"] > 0].sort_values("lost", ascending=False)
     return pd.DataFrame(
         {
             **{column: worst[column] for column in ("instance", "seed", "label", "variant", "policy")},
             "lost [s]": worst["lost"].map("{:.1f}".format),
-            "with [s]": worst["execution"].map("{:.1f}".format),
-            "without [s]": worst["execution_without"].map("{:.1f}".format),
-            "planned with, without": [f"{a}, {b}" for a, b in zip(worst["cost"], worst["cost_without"], strict=True)],
-            "carried out": [f"{a}, {b}" for a, b in zip(worst["executed"], worst["executed_without"], strict=True)],
-            "replans": [f"{a}, {b}" for a, b in zip(worst["replans"], worst["replans_without"], strict=True)],
+            "with [s]": worst["execution_seconds"].map("{:.1f}".format),
+            "without [s]": worst["execution_seconds_without"].map("{:.1f}".format),
+            "planned with, without": _both(worst, "cost"),
+            "carried out": _both(worst, "actions_executed"),
+            "replans": _both(worst, "replans"),
         }
     )
+
+
+def _both(sides: pd.DataFrame, column: str) -> list[str]:
+    return [f"{a}, {b}" for a, b in zip(sides[column], sides[f"{column}_without"], strict=True)]
 
 
 def failure_table(episodes: pd.DataFrame) -> pd.DataFrame:
@@ -182,7 +178,7 @@ def failure_table(episodes: pd.DataFrame) -> pd.DataFrame:
     rows = []
     for key, group in failed.groupby(columns):
         first = group.iloc[0]
-        example = f"{first['instance']} seed {first['seed']}: {first['reason']}"
+        example = f"{first['instance']} seed {first['seed']}: {first['failure_reason']}"
         rows.append({**dict(zip(columns, key, strict=True)), "episodes": len(group), "example": example})
     return pd.DataFrame(rows, columns=[*columns, "episodes", "example"])
 
@@ -207,7 +203,8 @@ def make(results: Path, out: Path) -> list[Path]:
         files.append(out / f"table-{benchmark}.tex")
         files[-1].write_text(latex(table, title, f"tab:{benchmark}"), encoding="utf-8")
     paired, failed = paired_table(episodes), failure_table(episodes)
-    parts += ["## Execution time saved by topple, paired by instance\n", markdown(paired)] if len(paired) else []
+    if len(paired):
+        parts += ["## Execution time saved by topple, paired by instance\n", f"{SPREADS}\n", markdown(paired)]
     slower = slower_table(episodes)
     parts += [f"## Where topple took longer: {len(slower)} pairs\n", markdown(slower)] if len(slower) else []
     parts += ["## Failures\n", markdown(failed) if len(failed) else "None.\n"]
@@ -217,15 +214,7 @@ def make(results: Path, out: Path) -> list[Path]:
 
 def main() -> None:
     """Make the tables and say where they are."""
-    parser = argparse.ArgumentParser(prog="python -m analysis.execution_tables", description=__doc__)
-    parser.add_argument("results", type=Path, help="directory with episodes.jsonl")
-    parser.add_argument("--out", type=Path, help="default: RESULTS/tables")
-    arguments = parser.parse_args()
-    try:
-        files = make(arguments.results, arguments.out or arguments.results / "tables")
-    except NoRecords as error:
-        sys.exit(f"analysis: {error}")
-    print("\n".join(str(file) for file in files))
+    command.run("execution_tables", __doc__, make, "tables")
 
 
 if __name__ == "__main__":

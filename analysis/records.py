@@ -9,6 +9,7 @@ from typing import Any
 
 import pandas as pd
 
+from analysis.actions import ACTION_COLUMNS, named
 from analysis.metrics import metric_columns
 
 RUN_FORMAT = "smash-run/1"
@@ -108,17 +109,11 @@ def incumbents_table(records: list[dict[str, Any]]) -> pd.DataFrame:
 
 
 def steps_table(records: list[dict[str, Any]]) -> pd.DataFrame:
-    """Return one row an action of the best plan: run key, step (from 1), action, block, location, height.
-
-    `location` is a pick's source, a place's target or the toppled stack; `block` is null for a topple, `height`
-    (1 is the bottom) for the others.
-    """
-    rows = []
-    for record in records:
-        for step, (action, first, second) in enumerate(record["actions"] or [], start=1):
-            toppled = action == "topple"
-            block, location, height = (None, first, second) if toppled else (first, second, None)
-            rows.append((record["key"], step, action, block, location, height))
-    words = dict.fromkeys(("key", "action", "block", "location"), "string")
-    table = pd.DataFrame(rows, columns=["key", "step", "action", "block", "location", "height"])
-    return table.astype(words | {"step": "int64", "height": "Int64"})
+    """Return one row an action of the best plan: run key, step (from 1), and the columns of `analysis.actions`."""
+    rows = [
+        {"key": record["key"], "step": step, **named(action)}
+        for record in records
+        for step, action in enumerate(record["actions"] or [], start=1)
+    ]
+    types = {"key": "string", "step": "int64", **ACTION_COLUMNS}
+    return pd.DataFrame(rows, columns=list(types)).astype(types)

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import argparse
 import math
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
+from analysis import command
 from analysis.charts import Chart, Panel, curves
-from analysis.records import NoRecords, read_records, runs_table
+from analysis.records import read_records, runs_table
 from analysis.tables import markdown
 
 if TYPE_CHECKING:
@@ -145,17 +144,7 @@ def make(results: Path, out: Path) -> list[Path]:
 
 def main() -> None:
     """Make the scaling tables and curves and say where they are."""
-    parser = argparse.ArgumentParser(prog="python -m analysis.scaling", description=__doc__)
-    parser.add_argument("results", type=Path, help="directory with runs.jsonl")
-    parser.add_argument("--out", type=Path, help="default: RESULTS/scaling")
-    arguments = parser.parse_args()
-    out = arguments.out or arguments.results / "scaling"
-    try:
-        files = make(arguments.results, out)
-    except NoRecords as error:
-        sys.exit(f"analysis: {error}")
-    print((out / "scaling.md").read_text(encoding="utf-8"))
-    print("\n".join(str(file) for file in files))
+    command.run("scaling", __doc__, make, "scaling", shown="scaling.md")
 
 
 if __name__ == "__main__":

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import argparse
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from analysis import command
 from analysis.execution_tables import read_episodes
 from analysis.records import NoRecords, read_lines
 from analysis.statistics import bootstrap, bootstrap_ratio
-from analysis.tables import latex, markdown
+from analysis.tables import SPREADS, latex, markdown, with_spread
 
 BASELINE = "no-topple-no-carry-no-lift"
 NAMES = {
@@ -26,46 +25,58 @@ NAMES = {
 }
 """Variants in the order of the rows."""
 LEGEND = (
-    "Saved is against pick and place only on the same seeds, with 95 % bootstrap intervals over seeds; the paper saves "
-    "14 % with topple and scoop. `predicted` is the plan's cost, which holds durations fitted to earlier episodes."
+    "Saved is against pick and place only with the same policy, on the same seeds; the paper saves 14 % with topple "
+    f"and scoop. {SPREADS} Here all are over seeds. `predicted` is the plan's cost, which holds durations fitted to "
+    "earlier episodes."
 )
 
 
 def scoop_table(runs: list[dict[str, Any]], episodes: pd.DataFrame) -> pd.DataFrame:
-    """Return a row per instance and variant of `smash`, with what other planners say of the same problem."""
+    """Return a row per instance, variant and policy of `smash`, with what other planners say of the same problem."""
     rows = []
     for run in runs:
         if run["label"] != "smash" or run["variant"] not in NAMES or run["actions"] is None:
             continue
         here = episodes[(episodes["instance"] == run["instance"]) & (episodes["label"] == "smash")]
-        part = here[(here["variant"] == run["variant"]) & here["success"]].set_index("seed")["execution"]
-        base = here[(here["variant"] == BASELINE) & here["success"]].set_index("seed")["execution"]
-        tried = here[here["variant"] == run["variant"]]
-        unit = run["instance_document"]["costs"]["unit"]
-        others = [
-            r
-            for r in runs
-            if r["label"] != "smash" and (r["instance"], r["variant"]) == (run["instance"], run["variant"])
-        ]
-        rows.append(
-            {
-                "instance": run["instance"],
-                "plan": NAMES[run["variant"]],
-                "actions": len(run["actions"]),
-                "kinds": _kinds(run["actions"]),
-                "cost": f"{run['cost']} {unit}" + (" (optimal)" if run["status"] == "optimal" else ""),
-                "others": "; ".join(f"{r['label']}: {r['cost']} {r['status']}" for r in others) or "–",
-                "planning [s]": f"{run['wall_seconds']:.2f}",
-                "predicted [s]": f"{run['cost'] / 1000:.1f}" if unit == "ms" else "–",
-                "execution [s]": _mean(part),
-                "saved [%]": _saved(part, base) if run["variant"] != BASELINE else "–",
-                "success": f"{int(tried['success'].sum())}/{len(tried)}",
-                "replans": f"{int(tried['replans'].fillna(0).sum())}",
-            }
-        )
+        policies = sorted(here.loc[here["variant"] == run["variant"], "policy"].unique())
+        for policy in policies or ["–"]:
+            carried_out = _carried_out(here[here["policy"] == policy], run["variant"])
+            rows.append({**_planned(run, runs), "policy": policy, **carried_out})
     order = {name: index for index, name in enumerate(NAMES.values())}
     table = pd.DataFrame(rows)
     return table.sort_values(["instance", "plan"], key=lambda c: c.map(order) if c.name == "plan" else c, kind="stable")
+
+
+def _planned(run: dict[str, Any], runs: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return the columns of a plan."""
+    problem, unit = (run["instance"], run["variant"]), run["instance_document"]["costs"]["unit"]
+    others = [other for other in runs if other["label"] != "smash" and (other["instance"], other["variant"]) == problem]
+    return {
+        "instance": run["instance"],
+        "plan": NAMES[run["variant"]],
+        "actions": len(run["actions"]),
+        "kinds": _kinds(run["actions"]),
+        "cost": f"{run['cost']} {unit}" + (" (optimal)" if run["status"] == "optimal" else ""),
+        "others": "; ".join(f"{other['label']}: {_answer(other)}" for other in others) or "–",
+        "planning [s]": f"{run['wall_seconds']:.2f}",
+        "predicted [s]": f"{run['cost'] / 1000:.1f}" if unit == "ms" else "–",
+    }
+
+
+def _answer(run: dict[str, Any]) -> str:
+    return str(run["status"]) if run["cost"] is None else f"{run['cost']} {run['status']}"
+
+
+def _carried_out(episodes: pd.DataFrame, variant: str) -> dict[str, str]:
+    """Return the columns of a variant's episodes, of `episodes` of one instance and policy."""
+    tried, good = episodes[episodes["variant"] == variant], episodes[episodes["success"]]
+    part, base = (good[good["variant"] == name].set_index("seed")["execution_seconds"] for name in (variant, BASELINE))
+    return {
+        "execution [s]": _mean(part),
+        "saved [%]": _saved(part, base) if variant != BASELINE else "–",
+        "success": f"{int(tried['success'].sum())}/{len(tried)}",
+        "replans": f"{int(tried['replans'].fillna(0).sum())}",
+    }
 
 
 def _kinds(actions: list[list[Any]]) -> str:
@@ -77,21 +88,18 @@ def _kinds(actions: list[list[Any]]) -> str:
 
 
 def _mean(values: pd.Series[float]) -> str:
-    if values.empty:
-        return "–"
-    low, high = bootstrap(np.asarray(values, dtype=np.float64))
-    return f"{values.mean():.1f} [{low:.1f}, {high:.1f}]"
+    return with_spread(values.mean(), bootstrap(np.asarray(values, dtype=np.float64)), len(values))
 
 
 def _saved(values: pd.Series[float], base: pd.Series[float]) -> str:
-    """Return the share of time saved on the seeds on which both succeeded."""
+    """Return the share of time saved on the seeds on which both succeeded [%]."""
     both = pd.concat({"here": values, "base": base}, axis=1).dropna()
     if both.empty:
         return "–"
     here, there = both["here"].to_numpy(dtype=float), both["base"].to_numpy(dtype=float)
     low, high = bootstrap_ratio(here, there)
     share = 100 * (1 - here.sum() / there.sum())
-    return f"{share:.0f} [{100 * (1 - high):.0f}, {100 * (1 - low):.0f}] on {len(both)}"
+    return f"{with_spread(share, (100 * (1 - high), 100 * (1 - low)), len(both), 0)} on {len(both)}"
 
 
 def make(results: Path, out: Path) -> list[Path]:
@@ -114,15 +122,7 @@ def make(results: Path, out: Path) -> list[Path]:
 
 def main() -> None:
     """Make the table and say where it is."""
-    parser = argparse.ArgumentParser(prog="python -m analysis.scoop", description=__doc__)
-    parser.add_argument("results", type=Path, help="directory with runs.jsonl and episodes.jsonl")
-    parser.add_argument("--out", type=Path, help="default: RESULTS")
-    arguments = parser.parse_args()
-    try:
-        files = make(arguments.results, arguments.out or arguments.results)
-    except NoRecords as error:
-        sys.exit(f"analysis: {error}")
-    print("\n".join(str(file) for file in files))
+    command.run("scoop", __doc__, make)
 
 
 if __name__ == "__main__":

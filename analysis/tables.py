@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from math import isnan
+
 import pandas as pd
 
-from analysis.statistics import wilson
+from analysis.statistics import FEWEST_UNITS, Rate, is_range, wilson
 
 
 def mean_std(values: pd.Series[float], digits: int = 2) -> str:
@@ -29,6 +31,45 @@ def share(successes: int, trials: int) -> str:
     """Return a share in percent with its 95 % Wilson interval."""
     low, high = wilson(successes, trials)
     return f"{100 * successes / trials:.0f} % [{100 * low:.0f}, {100 * high:.0f}]" if trials else "–"
+
+
+SPREADS = (
+    f"Behind a mean or ratio stands its 95 % bootstrap interval in brackets; with fewer than {FEWEST_UNITS} instances "
+    "(or seeds of one instance), which carry no interval, their range in parentheses."
+)
+"""What `with_spread` shows, for a table's legend."""
+
+
+def with_spread(value: float, ends: tuple[float, float], units: int, digits: int = 1) -> str:
+    """Return a mean or ratio with its interval or range (`analysis.statistics.bootstrap`), or a dash without a value.
+
+    Args:
+        value: the mean or ratio.
+        ends: of its interval or range; not shown where there are none (nan).
+        units: how many it is made of.
+        digits: shown behind the point.
+    """
+    if isnan(value):
+        return "–"
+    low, high = (f"{end:.{digits}f}" for end in ends)
+    if isnan(ends[0]):
+        return f"{value:.{digits}f}"
+    return f"{value:.{digits}f} " + (f"({low} to {high})" if is_range(units) else f"[{low}, {high}]")
+
+
+RATES = (
+    "Success is the mean over instances of each one's own rate; its 95 % Wilson interval counts instances, not "
+    "episodes: seeds of one instance are not independent, and so it is conservative."
+)
+"""What `rate_cell` shows, for a table's legend."""
+
+
+def rate_cell(rate: Rate, trials: str) -> str:
+    """Return a rate with its 95 % interval, the number of instances and of trials (in words: episodes, say)."""
+    if not rate.units:
+        return "–"
+    low, high = rate.interval
+    return f"{rate.mean:.2f} [{low:.2f}, {high:.2f}] of {rate.units} ({rate.trials} {trials})"
 
 
 def ablation_table(runs: pd.DataFrame) -> pd.DataFrame:

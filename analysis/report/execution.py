@@ -10,22 +10,22 @@ from analysis.execution_tables import (
     BENCHMARKS,
     LEGEND,
     VARIANTS,
-    episode_table,
     failure_table,
     metric_table,
     paired_table,
+    told_episodes,
 )
 from analysis.heatmaps import SUCCESS_COLOURS
 from analysis.report.blocks import Block, Cell, Grid, GridBlock, TableBlock
 from analysis.report.grids import Shades, variant_words
 from analysis.report.sources import Record
-from analysis.statistics import wilson
-from analysis.tables import share
+from analysis.statistics import success_rate
+from analysis.tables import SPREADS, rate_cell
 
 
 def execution_blocks(records: list[Record]) -> list[Block]:
     """Return success as grids, the paper's tables with ours, execution time saved, and the failures."""
-    episodes = _by_scene(episode_table(records))
+    episodes = _by_scene(told_episodes(records))
     blocks: list[Block] = [_success(episodes)]
     for benchmark, title in BENCHMARKS.items():
         if (episodes["benchmark"] == benchmark).any():
@@ -36,7 +36,7 @@ def execution_blocks(records: list[Record]) -> list[Block]:
     if len(saved):
         note = (
             "Without minus with, on the instances and seeds that the same planner and policy carried out both ways; an "
-            "instance counts once. Success is over all that were tried both ways."
+            f"instance counts once. Success is over all that were tried both ways. {SPREADS}"
         )
         blocks.append(TableBlock("execution-saved", "Execution time saved by topple, paired by instance", saved, note))
     failed = failure_table(episodes)
@@ -52,7 +52,7 @@ def execution_blocks(records: list[Record]) -> list[Block]:
 
 def _by_scene(episodes: pd.DataFrame) -> pd.DataFrame:
     """Return the episodes with their scene beside the policy where there are several: no figure is over two scenes."""
-    scenes = episodes["scene"].fillna("default") if "scene" in episodes else pd.Series("default", index=episodes.index)
+    scenes = episodes["scene"].fillna("default")
     return episodes.assign(policy=episodes["policy"] + ", " + scenes) if scenes.nunique() > 1 else episodes
 
 
@@ -69,23 +69,24 @@ def _failed(episodes: pd.DataFrame, row: dict[Hashable, object]) -> list[int]:
 
 def execution_headlines(records: list[Record]) -> list[str]:
     """Return success rates by policy and variant, and the time that topple saves, a sentence each."""
-    episodes = _by_scene(episode_table(records))
+    episodes = _by_scene(told_episodes(records))
     lines = []
     for (benchmark, policy), part in episodes.groupby(["benchmark", "policy"]):
         who = f"{str(benchmark).capitalize()}-goal episodes, policy “{policy}”"
         if part["success"].all():
-            lines.append(f"{who}: all {len(part)} succeed, in every variant ({share(len(part), len(part))}).")
+            lines.append(f"{who}: all {len(part)} succeed, in every variant ({_rate(part)}).")
             continue
-        said = [
-            f"{share(int(mine['success'].sum()), len(mine))} {variant_words(str(variant))} ({len(mine)} episodes)"
-            for variant, mine in part.groupby("variant")
-        ]
+        said = [f"{_rate(mine)} {variant_words(str(variant))}" for variant, mine in part.groupby("variant")]
         lines.append(f"{who}, success: {', '.join(said)}.")
     failures = episodes[~episodes["success"]]["failure"].value_counts()
     if len(failures):
         counted = ", ".join(f"{name} {count}" for name, count in failures.items())
         lines.append(f"{len(episodes[~episodes['success']])} of {len(episodes)} episodes failed: {counted}.")
     return lines
+
+
+def _rate(episodes: pd.DataFrame) -> str:
+    return rate_cell(success_rate(episodes, "success"), "episodes")
 
 
 def _success(episodes: pd.DataFrame) -> GridBlock:
@@ -110,9 +111,8 @@ def _success(episodes: pd.DataFrame) -> GridBlock:
                 wide=True,
             )
         )
-    frame = episodes.groupby(["benchmark", "blocks", "label", "policy", "variant"])["success"].agg(["sum", "size"])
-    shares = [share(int(good), int(total)) for good, total in zip(frame["sum"], frame["size"], strict=True)]
-    table = frame.assign(success=shares, episodes=frame["size"]).drop(columns=["sum", "size"]).reset_index()
+    by = ["benchmark", "blocks", "label", "policy", "variant"]
+    table = pd.DataFrame([(*key, _rate(part)) for key, part in episodes.groupby(by)], columns=[*by, "success"])
     return GridBlock("episode-success", "Episodes that reached their goal", "episodes", grids, table)
 
 
@@ -120,8 +120,8 @@ def _cell(part: pd.DataFrame | None, shade: Shades, who: str) -> Cell | None:
     if part is None:
         return None
     good, total = int(part["success"].sum()), len(part)
-    low, high = wilson(good, total)
+    low, high = success_rate(part, "success").interval
     first = part.iloc[0]
     words = f"{who}, {first['blocks']} blocks, {variant_words(first['variant'])}: {good} of {total} episodes succeed"
-    words += f", 95 % interval {100 * low:.0f} to {100 * high:.0f} %"
+    words += f", 95 % interval over instances {100 * low:.0f} to {100 * high:.0f} %"
     return Cell(f"{good}/{total}", *shade(good / total), words, [[int(number)] for number in part.index])

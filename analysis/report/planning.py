@@ -28,6 +28,7 @@ from analysis.report.instances import cards
 from analysis.report.sources import Source
 from analysis.report.strips import strips
 from analysis.scaling import scaling_cells
+from analysis.tables import SPREADS, with_spread
 
 MOST_EFFECTS, MOST_HEADLINES = 60, 4
 """Effects are told in as much detail as fits into so many rows, and into so many sentences of the overview."""
@@ -192,11 +193,12 @@ class Planning:
                     "What topple saves, instance by instance",
                     table,
                     "Actions without topple minus actions with it, on the instances that the same planner solved both "
-                    "ways (same buffers, same seed); an instance counts once. Dots: instances; bar: 95 % bootstrap "
-                    "interval of the mean. Solved: share with its 95 % Wilson interval, over all tried both ways. "
+                    "ways (same buffers, same seed); an instance counts once. Dots: instances; bar: interval or "
+                    f"range. {SPREADS} Solved: over all tried both ways, the mean of the instances' own rates with "
+                    "its 95 % Wilson interval over instances. "
                     f"“{ANY}”: no planner's figures, but the problem's own.",
                     emphasis=frozenset(i for i, e in enumerate(self.effects) if e.about["label"] == ANY),
-                    pictures={"saved, mean [95 %]": pictures},
+                    pictures={"saved, mean [95 %] (range)": pictures},
                 )
             )
         if self.runs["label"].nunique() > 1:
@@ -208,7 +210,8 @@ class Planning:
                     f"Planners against {reference}, pair by pair",
                     planner_table(effects, reference),
                     f"{reference} has the most plans, then the most proofs. Each planner is compared with it on the "
-                    "problems that both solved, so rows stand on different problems: read the shares beside the ratio.",
+                    "problems that both solved, so rows stand on different problems: read the shares beside the ratio. "
+                    f"{SPREADS}",
                 )
             )
         return blocks
@@ -244,9 +247,8 @@ def _effect_words(effect: Effect) -> str:
         return ""
     where = f" on {about['suite']}" if "suite" in about else ""
     where += f" with {about['buffers']} buffers" if "buffers" in about else ""
-    low, high = pair.interval
     return (
         f"Proven optima{where}: {pair.left_mean:.1f} actions without topple, {pair.right_mean:.1f} "
         f"{variant_words(about['variant'])} on the {pair.units} instances where both are proven; "
-        f"{pair.mean:.1f} saved [{low:.1f}, {high:.1f}], ratio {pair.ratio:.2f}."
+        f"{with_spread(pair.mean, pair.interval, pair.units)} saved, ratio {pair.ratio:.2f}."
     )

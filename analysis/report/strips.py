@@ -1,11 +1,11 @@
-"""Paired differences as small pictures for a table: a dot an instance, the mean and its interval, one scale for all."""
+"""Paired differences as small pictures for a table: dots for instances, mean, interval or range; one scale for all."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
 
-from analysis.statistics import Paired
+from analysis.statistics import Paired, is_range
 
 WIDTH, HEIGHT, MARGIN = 190.0, 22.0, 6.0
 """Size of a strip, and the room left and right of its scale [px]."""
@@ -24,7 +24,8 @@ def _strip(pair: Paired, low: float, high: float) -> str:
 
     middle = HEIGHT / 2
     left, right = pair.interval
-    words = f"mean {pair.mean:.1f}, 95 % interval {left:.1f} to {right:.1f}; {pair.units} instances"
+    spread = "range" if is_range(pair.units) else "95 % interval"
+    words = f"mean {pair.mean:.1f}, {spread} {left:.1f} to {right:.1f}; {pair.units} instances"
     dots = [
         f'<circle cx="{at(value):.1f}" cy="{middle:.1f}" r="{min(5.0, 2.0 + 0.4 * count):.1f}"/>'
         for value, count in sorted(Counter(pair.differences.tolist()).items())

@@ -1,8 +1,9 @@
 import json
 
+import pandas as pd
 import pytest
 
-from analysis.execution_sweeps import make, read_trials, saved_table, size_table
+from analysis.execution_sweeps import make, read_trials, saved_table, scene_table, size_table
 from analysis.execution_tables import read_episodes
 from analysis.records import NoRecords
 from tests.analysis.test_execution_tables import record
@@ -40,6 +41,20 @@ def test_topple_may_save_time_in_one_scene_and_lose_it_in_another(results):
     episodes["scene"] = episodes["scene"].fillna("default")
     saved = saved_table(episodes).set_index("scene")["saved [%]"]
     assert saved.to_dict() == {"default": "33", "friction-0.40": "-7"}
+
+
+def test_scenes_are_compared_on_what_is_successful_in_all_of_them(results):
+    episodes = read_episodes(results)
+    episodes["scene"] = episodes["scene"].fillna("default")
+    hard = {"instance": "a", "variant": "topple", "scene": "friction-0.40"}
+    lost = pd.concat([episodes[name] == value for name, value in hard.items()], axis=1).all(axis=1)
+    episodes.loc[lost, "success"] = False
+    episodes.loc[episodes["instance"] == "b", "execution_seconds"] += 1.0
+    table = scene_table(episodes).set_index(["scene", "variant"])
+    assert table["compared on, instances (episodes)"].tolist() == ["2 (2)", "1 (1)"] * 2
+    assert table.loc[("default", "topple"), "execution [s]"] == "21.0"
+    assert table.loc[("friction-0.40", "topple"), "execution [s]"] == "33.0"
+    assert table.loc[("friction-0.40", "topple"), "success"].startswith("0.50")
 
 
 def test_topples_are_counted_by_size_and_scene(results):

@@ -6,9 +6,9 @@ from analysis.execution_tables import failure_table, make, metric_table, paired_
 from analysis.records import NoRecords
 
 
-def record(instance, variant, seconds, success=True, seed=0):
+def record(instance, variant, seconds, success=True, seed=0, task=0.0):
     failure = None if success else {"name": "slip", "reason": "it slipped", "step": 2, "action": ["pick", "a", "s"]}
-    times = {"offline": 0.1, "offline_cpu": 0.1, "online": 0.2, "online_cpu": 0.2, "execution": seconds, "task": 0.0}
+    times = {"offline": 0.1, "offline_cpu": 0.1, "online": 0.2, "online_cpu": 0.2, "execution": seconds, "task": task}
     episode = {
         "success": success,
         "failure": failure,
@@ -32,6 +32,11 @@ def record(instance, variant, seconds, success=True, seed=0):
         "first_plan_seconds": 0.01,
         "episode": episode,
         "problem": "",
+        "started": "2026-01-01T00:00:00.000+00:00",
+        "load_average": [0.1, 0.2],
+        "commit": {"hash": "c", "dirty": False},
+        "machine": {"processor": "p"},
+        "versions": {},
     }
 
 
@@ -57,10 +62,40 @@ def test_the_paper_s_figures_stand_beside_ours(results):
     assert rows.loc["smash, open", "9 blocks w/ topple"] == "–"
 
 
+def test_success_counts_instances_and_says_how_many_episodes(tmp_path):
+    records = [record("a", "topple", 20.0, seed=seed) for seed in range(3)] + [
+        record("b", "topple", 5.0, success=False)
+    ]
+    (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(r) + "\n" for r in records))
+    table = metric_table(read_episodes(tmp_path), "multi").set_index(["metric", "source"])
+    assert table.loc[("Success rate", "smash, open"), "4 blocks w/ topple"] == "0.50 [0.09, 0.91] of 2 (4 episodes)"
+
+
+def test_actions_are_of_all_plans_and_times_of_successful_episodes(tmp_path):
+    records = [record("a", "topple", 20.0), {**record("b", "topple", 5.0, success=False), "cost": 12}]
+    (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(r) + "\n" for r in records))
+    ours = metric_table(read_episodes(tmp_path), "multi").set_index(["metric", "source"])["4 blocks w/ topple"]
+    assert ours["Number of actions", "smash, open"] == "10.00 ± 2.83 (10.00)"
+    assert ours["Execution [s]", "smash, open"] == "20.00 ± 0.00 (20.00)"
+
+
+def test_replanning_stands_beside_execution_and_the_paper_has_none(tmp_path):
+    records = [record("a", "topple", 20.0, task=1.5), record("b", "topple", 20.0), record("a", "no-topple", 30.0)]
+    (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(r) + "\n" for r in records))
+    episodes = read_episodes(tmp_path)
+    rows = metric_table(episodes, "multi").set_index(["metric", "source"])["4 blocks w/ topple"]
+    assert rows["Replanning [s]", "paper"] == "–"
+    assert rows["Replanning [s]", "smash, open"] == "0.75 ± 1.06 (0.75)"
+    assert paired_table(episodes)["replanning without, with [s]"].tolist() == ["0.00, 1.50"]
+    make(tmp_path, tmp_path)
+    assert r"Replanning [s] & paper & -- & --" in (tmp_path / "table-multi.tex").read_text()
+
+
 def test_savings_are_paired_over_instances_that_both_solved(results):
     (row,) = paired_table(read_episodes(results)).to_dict("records")
     assert row["instances"] == 2
-    assert row["saved [s], mean [95 %]"].startswith("6.0")
+    assert row["success with"] == "0.67 [0.21, 0.94] of 3 (3 episodes)"
+    assert row["saved [s], mean [95 %] (range)"] == "6.0 (2.0 to 10.0)"
     assert row["faster, equal, slower"] == "2, 0, 0"
     assert row["the paper [%]"] == "13"
 
@@ -69,6 +104,13 @@ def test_failures_are_listed_with_an_example(results):
     (row,) = failure_table(read_episodes(results)).to_dict("records")
     assert row["failure"] == "slip"
     assert "it slipped" in row["example"]
+
+
+def test_an_episode_whose_process_ended_is_a_failure_with_the_process_s_words(tmp_path):
+    crashed = {**record("a", "topple", 0.0), "episode": None, "problem": "killed by signal 9"}
+    (tmp_path / "episodes.jsonl").write_text(json.dumps(crashed) + "\n" + json.dumps(record("b", "topple", 1.0)) + "\n")
+    (row,) = failure_table(read_episodes(tmp_path)).to_dict("records")
+    assert (row["failure"], row["example"]) == ("crashed", "a seed 0: killed by signal 9")
 
 
 def test_tables_are_written_as_markdown_and_latex(results):

@@ -1,6 +1,7 @@
 """Tidy tables: the same rows as Parquet and as CSV, one a run, an incumbent, a step."""
 
 import sys
+from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -68,6 +69,29 @@ def test_a_step_names_block_location_and_height(tables):
         ["pick", "b1", "table", None],
         ["place", "b1", "s2", None],
     ]
+
+
+def test_a_carry_and_a_lift_have_their_own_columns(tmp_path):
+    plan = [["carry", "tray", "right"], ["lift", "s1", 2, "u1"], ["juggle", "s1", "s2", "s3", 4]]
+    assert export(tmp_path, record(0, [(0.1, 3)], **WHOLE, actions=plan)).exit_code == 0
+    steps = pd.read_parquet(tmp_path / "out" / "steps.parquet").astype(object)
+    steps = steps.where(steps.notna(), None)
+    assert steps[["action", "block", "location", "height", "carrier", "target"]].values.tolist() == [
+        ["carry", None, "right", None, "tray", None],
+        ["lift", None, "s1", 2, None, "u1"],
+        ["juggle", None, None, None, None, None],
+    ]
+
+
+def test_plans_and_episodes_of_the_whole_family_are_exported(tmp_path):
+    results = Path(__file__).parents[2] / "results" / "scoop"
+    ended = CliRunner().invoke(smash, ["records", "export", str(results), "--out", str(tmp_path)])
+    assert ended.exit_code == 0, ended.output
+    for name in ("steps", "actions"):
+        table = pd.read_parquet(tmp_path / f"{name}.parquet")
+        assert {"carry", "lift"} <= set(table["action"])
+        assert set(table["carrier"].dropna()) == {"tray"}
+        assert table.loc[table["action"] == "lift", "target"].notna().all()
 
 
 def test_columns_and_their_types_do_not_hang_on_what_was_recorded(tables, tmp_path):

@@ -18,13 +18,14 @@ def run(variant, actions, cost, label="smash"):
     }
 
 
-def episode(variant, seed, execution, success=True):
+def episode(variant, seed, execution, success=True, policy="replan"):
     return {
+        "policy": policy,
         "label": "smash",
         "variant": variant,
         "instance": "scoop",
         "seed": seed,
-        "execution": execution,
+        "execution_seconds": execution,
         "success": success,
         "replans": 0,
     }
@@ -52,3 +53,25 @@ def test_savings_are_over_the_seeds_on_which_both_succeeded():
     assert row["saved [%]"].endswith("on 1")
     assert (row["kinds"], row["success"], row["predicted [s]"]) == ("1 carry", "1/2", "8.0")
     assert row["others"] == "fd-opt: 8000 optimal"
+
+
+def test_each_policy_has_its_row_and_few_seeds_a_range():
+    episodes = pd.DataFrame(
+        [
+            episode(variant, seed, seconds + seed, policy=policy)
+            for variant, seconds in ((BASELINE, 20.0), ("topple", 10.0))
+            for policy in ("open", "replan")
+            for seed in range(3)
+        ]
+    )
+    runs = [run(BASELINE, [["pick", "a", "s"]] * 4, 10000), run("topple", [["topple", "s", 1]], 5000)]
+    table = scoop_table(runs, episodes)
+    assert table["policy"].tolist() == ["open", "replan"] * 2
+    assert table.iloc[2]["execution [s]"] == "11.0 (10.0 to 12.0)"
+    assert table.iloc[2]["saved [%]"] == "48 (45 to 50) on 3"
+
+
+def test_a_plan_that_was_not_carried_out_has_a_row():
+    runs = [run(BASELINE, [["pick", "a", "s"]], 10000)]
+    (row,) = scoop_table(runs, pd.DataFrame([episode("topple", 0, 1.0)])).to_dict("records")
+    assert (row["policy"], row["execution [s]"], row["success"]) == ("–", "–", "0/0")

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analysis.statistics import bootstrap, bootstrap_ratio, paired, wilson
+from analysis.statistics import bootstrap, bootstrap_ratio, is_range, paired, success_rate, wilson
+from analysis.tables import with_spread
 
 
 def side(costs, seeds=(0,)):
@@ -35,9 +36,28 @@ def test_a_wilson_interval_holds_the_share_and_stays_a_share(counts):
     assert successes / trials - 1e-12 <= high <= 1.0
 
 
+def test_a_rate_counts_instances_and_more_seeds_do_not_narrow_its_interval():
+    once = pd.DataFrame({"instance": ["a", "b"], "good": [True, False]})
+    uneven = pd.concat([once, *[once[once["instance"] == "a"]] * 2])
+    rate = success_rate(uneven, "good")
+    assert (rate.mean, rate.units, rate.trials) == (0.5, 2, 4)
+    assert rate.interval == success_rate(once, "good").interval == wilson(1, 2)
+    assert math.isnan(success_rate(once.iloc[:0], "good").mean)
+
+
 def test_the_bootstrap_interval_holds_the_mean():
-    low, high = bootstrap(np.array([1.0, 2.0, 3.0, 4.0]))
-    assert 1.0 <= low < 2.5 < high <= 4.0
+    low, high = bootstrap(np.arange(8.0))
+    assert 0.0 < low < 3.5 < high < 7.0
+
+
+def test_fewer_than_eight_values_have_a_range_and_no_interval():
+    assert bootstrap(np.array([3.0, 1.0, 2.0])) == (1.0, 3.0)
+    assert bootstrap_ratio(np.array([1.0, 3.0]), np.array([2.0, 2.0])) == (0.5, 1.5)
+    assert (is_range(7), is_range(8)) == (True, False)
+    assert with_spread(2.0, (1.0, 3.0), 7) == "2.0 (1.0 to 3.0)"
+    assert with_spread(2.0, (1.0, 3.0), 8) == "2.0 [1.0, 3.0]"
+    assert with_spread(2.0, (math.nan, math.nan), 8) == "2.0"
+    assert with_spread(math.nan, (math.nan, math.nan), 0) == "–"
 
 
 def test_the_bootstrap_of_equal_values_is_that_value_and_of_none_is_no_number():
@@ -51,13 +71,13 @@ def test_the_same_records_give_the_same_interval():
 
 
 def test_a_ratio_that_is_the_same_in_every_pair_has_no_spread():
-    below = np.array([10.0, 20.0, 40.0])
+    below = np.array([10.0, 20.0, 40.0] * 3)
     assert bootstrap_ratio(1.5 * below, below) == pytest.approx((1.5, 1.5))
 
 
 def test_only_common_instances_are_compared_and_coverage_is_kept():
     pair = compare(side({"a": 30, "b": 20, "c": None, "d": 99}), side({"a": 20, "b": None, "c": 5, "d": 66}))
-    assert (pair.problems, pair.left_solved, pair.right_solved, pair.units) == (4, 3, 3, 2)
+    assert (pair.problems, pair.left_rate.mean, pair.right_rate.mean, pair.units) == (4, 0.75, 0.75, 2)
     assert pair.differences.tolist() == [10, 33]
     assert (pair.left_mean, pair.right_mean) == (64.5, 43)
     assert pair.ratio == pytest.approx(1.5)
@@ -70,13 +90,13 @@ def test_what_one_side_alone_tried_is_no_pair():
 
 def test_seeds_of_one_instance_are_one_piece_of_evidence():
     pair = compare(side({"a": 30, "b": 20}, seeds=(0, 1, 2)), side({"a": 20, "b": 20}, seeds=(0, 1, 2)))
-    assert (pair.problems, pair.units) == (6, 2)
+    assert (pair.problems, pair.left_rate.units, pair.units) == (6, 2, 2)
 
 
 def test_nothing_in_common_gives_no_figure():
     pair = compare(side({"a": 3, "b": None}), side({"a": None, "b": 4}))
     assert pair.units == 0
-    assert all(math.isnan(x) for x in (pair.mean, pair.ratio, *pair.interval, *pair.quartiles))
+    assert all(math.isnan(x) for x in (pair.mean, pair.ratio, *pair.interval))
 
 
 def test_plans_of_no_action_have_a_difference_but_no_ratio():

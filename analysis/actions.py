@@ -1,0 +1,32 @@
+"""An action of a plan or an episode as the columns of a table."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+FIELDS: Mapping[str, tuple[str, ...]] = {
+    "pick": ("block", "location"),
+    "place": ("block", "location"),
+    "topple": ("location", "height"),
+    "carry": ("carrier", "location"),
+    "lift": ("location", "height", "target"),
+}
+"""Kind of action -> what its fields are, in the order in which records list them.
+
+`location` is a pick's source, a place's target, the stack that is toppled or lifted off, the station that a carrier
+goes to; `height` is that of the lowest block that moves (1 is the bottom).
+"""
+ACTION_COLUMNS: Mapping[str, str] = {
+    **dict.fromkeys(("action", "block", "location"), "string"),
+    "height": "Int64",
+    **dict.fromkeys(("carrier", "target"), "string"),
+}
+"""Columns that name an action, and their types; those that its kind does not have are null."""
+
+
+def named(action: Sequence[str | int]) -> dict[str, str | int | None]:
+    """Return the columns of an action; of a kind that another package has added only its name is known."""
+    kind, *values = action
+    fields = FIELDS.get(str(kind))
+    known = dict(zip(fields, values, strict=True)) if fields else {}
+    return {**dict.fromkeys(ACTION_COLUMNS), "action": kind, **known}
