@@ -13,7 +13,7 @@ from baselines.facts import facts_of
 from baselines.names import Fact, Names, numbered
 from baselines.task import HEADER, PddlTask
 from smash.problem.errors import MalformedFile
-from smash.problem.files import make_instance
+from smash.problem.instance_file import make_instance
 from smash.problem.model import Goal, Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal
 
 _TOKEN = re.compile(r"[()]|[^\s()]+")

@@ -11,7 +11,7 @@ from baselines.encodings import Encoding, encoding_for
 from baselines.facts import Facts, facts_of
 from baselines.family.layout import Layout
 from baselines.names import Fact, Names
-from smash.problem.files import write_text
+from smash.problem.documents import write_text
 from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal
 
 HEADER = ";; smash-names: "

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import click
 
+from smash.problem.documents import read_bytes, write_text
 from smash.problem.errors import MalformedFile
-from smash.problem.files import read_bytes, read_plan, write_text
+from smash.problem.plan_file import read_plan
 
 list_option = click.option(
     "--list",

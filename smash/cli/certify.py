@@ -9,8 +9,10 @@ import click
 
 from smash.cli import fail
 from smash.problem.certificate import certificate_text
+from smash.problem.documents import write_text
 from smash.problem.feasibility import why_infeasible
-from smash.problem.files import read_instance, read_plan, write_text
+from smash.problem.instance_file import read_instance
+from smash.problem.plan_file import read_plan
 
 
 @click.command("certify")

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
-from smash.problem.files import instance_from_document, read_instance, write_instance
+from smash.problem.instance_file import instance_from_document, read_instance, write_instance
 
 
 @click.command("costs")

@@ -7,8 +7,10 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
-from smash.problem.files import read_instance, read_plan, write_text
+from smash.problem.documents import require_writable, write_text
+from smash.problem.instance_file import read_instance
 from smash.problem.plan import check_plan
+from smash.problem.plan_file import read_plan
 
 
 @click.command("execute")
@@ -54,6 +56,7 @@ def command(
       smash execute examples/figure1.json plan.json --replay episode.html
       smash execute examples/figure1.json plan.json --seed 3 --no-replan
     """
+    require_writable(out)
     problem, filed = read_instance(instance), read_plan(plan)
     verdict = check_plan(problem, filed)
     if not verdict.accepted:

@@ -8,7 +8,7 @@ import click
 
 from smash.cli.choices import without_option
 from smash.problem.errors import MalformedFile
-from smash.problem.files import read_instance
+from smash.problem.instance_file import read_instance
 from smash.problem.model import PlanOptions
 
 

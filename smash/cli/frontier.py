@@ -13,7 +13,7 @@ import click
 from smash.experiments.frontier import FrontierPoint, fewest_buffers, frontier
 from smash.planners.registry import DEFAULT, get_planner
 from smash.problem.errors import MalformedFile
-from smash.problem.files import read_instance
+from smash.problem.instance_file import read_instance
 from smash.problem.suites import read_suite
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from smash.problem.blocksworld import read_blocksworld
-from smash.problem.files import write_instance
+from smash.problem.instance_file import write_instance
 
 
 @click.command("import-blocks")

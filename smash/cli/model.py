@@ -10,7 +10,7 @@ from smash.cli.choices import without_option
 from smash.planners.protocol import SolveOptions, why_unsupported
 from smash.planners.registry import get_planner
 from smash.problem.errors import Unsupported
-from smash.problem.files import read_instance
+from smash.problem.instance_file import read_instance
 
 
 @click.command("model")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -18,9 +17,10 @@ from smash.experiments.isolation import run_isolated
 from smash.experiments.job import DEFAULT_MEMORY, Job, Report
 from smash.planners.protocol import MOST_THREADS, OnIncumbent, SolveOptions
 from smash.planners.registry import DEFAULT
-from smash.problem.errors import MalformedFile
-from smash.problem.files import plan_text, read_instance, write_text
+from smash.problem.documents import require_writable, write_text
+from smash.problem.instance_file import read_instance
 from smash.problem.model import Action
+from smash.problem.plan_file import plan_text
 
 
 @click.command("plan")
@@ -87,8 +87,7 @@ def command(
     job = Job(planner, read_instance(instance), options, budget, memory)
     if math.isnan(budget):
         raise click.BadParameter("nan is no number of seconds", param_hint="--budget")
-    if out is not None and not os.access(out.parent, os.W_OK):
-        raise MalformedFile(str(out), "cannot be written: its directory is missing or closed")
+    require_writable(out)
     with stopped_by_signals() as stop, _progress(planner) as tell:
         report = run_isolated(job, tell, stop)
     _write(report, job, out)

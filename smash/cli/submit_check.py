@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from smash.problem.certificate import read_certificate
-from smash.problem.files import read_plan
+from smash.problem.plan_file import read_plan
 
 
 @click.command("submit-check")

@@ -19,7 +19,7 @@ from smash.experiments.experiment import Experiment, Run, experiment_runs, not_i
 from smash.experiments.keep import keep
 from smash.experiments.records import Records
 from smash.experiments.sweep import execute, local_task, sweep
-from smash.problem.files import write_text
+from smash.problem.documents import write_text
 
 
 @click.command("sweep")

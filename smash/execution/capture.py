@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -15,7 +14,12 @@ from smash.execution.recording import Recording
 from smash.execution.tabletop import Tabletop
 from smash.execution.trajectory_file import write_trajectory
 from smash.execution.world import Frame
+from smash.problem.documents import require_writable
 from smash.problem.errors import MalformedFile
+
+FILMS = (".mp4", ".gif")
+PICTURES = (".png", ".pdf", ".svg", ".jpg")
+"""How the names of what is written end."""
 
 Sample = tuple[float, NDArray[np.float64]]
 
@@ -39,12 +43,9 @@ class Capture:
         trajectory: Path | None = None,
     ) -> None:
         self.replay, self.video, self.stills, self.trajectory = replay, video, stills, trajectory
-        _require_directories(path for path in (replay, video, stills, trajectory) if path is not None)
-        if video is not None:
-            from smash.execution.pictures import FILMS
-
-            if video.suffix not in FILMS:
-                raise MalformedFile(str(video), f"the name of a film ends in {' or '.join(FILMS)}")
+        require_writable(replay, video, stills, trajectory)
+        _require_suffix(video, "a film", FILMS)
+        _require_suffix(stills, "stills", PICTURES)
         self.recording = Recording()
 
     @property
@@ -91,7 +92,6 @@ def _thinned(samples: Iterable[Sample]) -> Iterator[Sample]:
             due = moment + TRAJECTORY_INTERVAL - 1e-6
 
 
-def _require_directories(paths: Iterable[Path]) -> None:
-    for path in paths:
-        if not os.access(path.parent, os.W_OK):
-            raise MalformedFile(str(path), "cannot be written: its directory is missing or closed")
+def _require_suffix(path: Path | None, what: str, allowed: tuple[str, ...]) -> None:
+    if path is not None and path.suffix not in allowed:
+        raise MalformedFile(str(path), f"the name of {what} ends in {', '.join(allowed[:-1])} or {allowed[-1]}")

@@ -13,7 +13,7 @@ from typing import Annotated, Literal, Self, cast
 
 import msgspec
 
-from smash.problem.files import check_format, convert, parse_json, read_bytes, write_text
+from smash.problem.documents import check_format, convert, parse_json, read_bytes, write_text
 
 ESTIMATES_FORMAT = "smash-topple-estimates/1"
 TRUSTED = 0.9

@@ -27,9 +27,9 @@ from smash.execution.steps import Steps
 from smash.execution.tabletop import Tabletop
 from smash.execution.world import Frame, World
 from smash.problem.errors import IllegalAction
-from smash.problem.files import action_from_list, action_list
 from smash.problem.model import Action, Instance, PlanOptions, State
 from smash.problem.plan import Plan
+from smash.problem.plan_file import action_from_list, action_list
 from smash.problem.rules import Law
 
 Replanner = Callable[[Instance, PlanOptions], Sequence[Action] | None]

@@ -31,7 +31,7 @@ from smash.execution.scene import Scene
 from smash.execution.scene_file import default_scene
 from smash.execution.start import starting_poses
 from smash.execution.steps import Move, Segment, Steps
-from smash.problem.files import make_instance
+from smash.problem.instance_file import make_instance
 from smash.problem.model import Instance, PositionsGoal
 
 TOUCH = 0.003

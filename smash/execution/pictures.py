@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from smash.execution.recording import Recording
 from smash.execution.tabletop import Tabletop
 from smash.execution.world import ARM, FINGERS, connect
-from smash.problem.errors import MalformedFile
 
 SIZE = (960, 640)
 """Width and height of a picture [pixels]."""
@@ -22,7 +21,6 @@ FILM_SIZE = (640, 426)
 SPEED_UP = 4
 """A film runs this much faster than simulated time."""
 TRAY_COLOUR = (0.62, 0.47, 0.30)
-FILMS = (".mp4", ".gif")
 
 Image = NDArray[np.uint8]
 
@@ -126,13 +124,7 @@ def write_stills(path: Path, recording: Recording, tabletop: Tabletop, moments: 
 
 
 def write_film(path: Path, recording: Recording, tabletop: Tabletop) -> None:
-    """Write an episode as a film, several times faster than it was.
-
-    Raises:
-        MalformedFile: where the name's ending is none that can be written.
-    """
-    if path.suffix not in FILMS:
-        raise MalformedFile(str(path), f"the name of a film ends in {' or '.join(FILMS)}")
+    """Write an episode as a film, .mp4 or .gif, several times faster than it was."""
     import imageio.v2 as imageio
 
     count, length = len(recording.times), recording.times[-1] - recording.times[0]

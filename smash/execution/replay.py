@@ -18,7 +18,7 @@ from smash.execution.pictures import block_colours
 from smash.execution.recording import Recording
 from smash.execution.robot import panda_urdf
 from smash.execution.tabletop import Tabletop
-from smash.problem.files import write_text
+from smash.problem.documents import write_text
 
 TEMPLATE = Path(__file__).parent / "replay.html"
 MESHES = ("link0", *(f"link{number}" for number in range(1, 8)), "hand", "finger", "finger")

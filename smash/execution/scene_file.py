@@ -16,8 +16,8 @@ import msgspec
 
 from smash.execution.tabletop import DIRECTIONS, Friction, Slot, Tabletop
 from smash.execution.tray import Tray
+from smash.problem.documents import check_format, convert, parse_json, parse_toml, read_bytes
 from smash.problem.errors import MalformedFile
-from smash.problem.files import check_format, convert, parse_json, parse_toml, read_bytes
 
 SCENE_FORMAT = "smash-scene/1"
 DEFAULT_SCENE = Path(__file__).parent / "scenes" / "default.toml"

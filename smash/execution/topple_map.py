@@ -28,7 +28,7 @@ from smash.execution.start import starting_poses
 from smash.execution.steps import Steps
 from smash.execution.tabletop import Tabletop
 from smash.execution.world import World
-from smash.problem.files import make_instance
+from smash.problem.instance_file import make_instance
 from smash.problem.model import PositionsGoal
 from smash.problem.topple import Topple
 

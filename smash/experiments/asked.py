@@ -10,8 +10,8 @@ from typing import Literal, cast
 import msgspec
 
 from smash.experiments.episodes import EpisodeRun, episode_runs
+from smash.problem.documents import convert, read_bytes, write_text
 from smash.problem.errors import MalformedFile
-from smash.problem.files import convert, read_bytes, write_text
 
 ASKED = "episodes-asked.json"
 

@@ -14,8 +14,9 @@ from typing import Any, NamedTuple
 from smash.experiments.experiment import Run, instance_hash
 from smash.experiments.records import DAMAGED, RUN_FORMAT, RUNS, recorded_plan
 from smash.experiments.schema import RunRecord
+from smash.problem.documents import convert, read_bytes
 from smash.problem.errors import MalformedFile, SmashError
-from smash.problem.files import convert, instance_from_document, read_bytes
+from smash.problem.instance_file import instance_from_document
 from smash.problem.plan import check_plan
 
 NEEDS_REASON = ("crashed", "memory", "over-budget", "refused", "unsupported", "not-installed")

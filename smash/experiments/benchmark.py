@@ -17,8 +17,8 @@ from time import perf_counter
 
 from smash.planners.protocol import PlanResult, SolveOptions
 from smash.planners.registry import get_planner
+from smash.problem.documents import write_text
 from smash.problem.errors import SmashError
-from smash.problem.files import write_text
 from smash.problem.model import Instance
 from smash.problem.open_instances import Shape, draw_instance
 from smash.problem.suites import PAPER_SUITES, read_suite

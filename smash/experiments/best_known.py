@@ -16,9 +16,9 @@ import msgspec
 from smash.experiments.experiment import instance_hash, variant_options
 from smash.experiments.records import recorded_plan
 from smash.problem.errors import MalformedFile
-from smash.problem.files import read_plan
 from smash.problem.model import Action, Instance, PlanOptions
 from smash.problem.open_instances import FAMILIES
+from smash.problem.plan_file import read_plan
 from smash.problem.rules import Law
 from smash.problem.suites import read_suite
 

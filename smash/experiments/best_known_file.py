@@ -11,10 +11,12 @@ from typing import Any, cast
 import msgspec
 
 from smash.experiments.best_known import PLANS, BestKnown, Entry, Found, open_instances, options_of
+from smash.problem.documents import read_bytes, write_text
 from smash.problem.errors import MalformedFile, SmashError
-from smash.problem.files import instance_document, plan_text, read_bytes, write_text
+from smash.problem.instance_file import instance_document
 from smash.problem.model import Action, Instance
 from smash.problem.plan import Incumbent, Plan
+from smash.problem.plan_file import plan_text
 
 LIST = Path(__file__).parents[2] / "results" / "best-known"
 """The list of this repository."""

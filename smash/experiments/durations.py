@@ -16,8 +16,8 @@ from scipy.optimize import nnls
 
 from smash.problem.costs import Costs
 from smash.problem.errors import IllegalAction
-from smash.problem.files import action_from_list
 from smash.problem.model import Instance, State
+from smash.problem.plan_file import action_from_list
 from smash.problem.rules import Law
 
 MILLIMETRES = 1000.0

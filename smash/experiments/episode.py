@@ -17,7 +17,7 @@ from smash.experiments.episodes import REPLAN_BUDGET
 from smash.experiments.lifetime import end_with_parent
 from smash.experiments.records import recorded_plan
 from smash.experiments.replanning import replanner
-from smash.problem.files import instance_from_document
+from smash.problem.instance_file import instance_from_document
 
 
 def run_question(question: dict[str, Any]) -> Episode:

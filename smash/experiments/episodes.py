@@ -19,7 +19,7 @@ from typing import Any
 from smash.experiments.environment import commit, load, machine, versions
 from smash.experiments.episode_worker import Crew, EpisodeLost
 from smash.experiments.records import RUNS, Records, read_records
-from smash.problem.files import instance_from_document
+from smash.problem.instance_file import instance_from_document
 from smash.problem.model import Instance, PositionsGoal
 
 EPISODE_RUN_FORMAT = "smash-episode-run/1"

@@ -21,9 +21,10 @@ import msgspec
 from smash.experiments.job import DEFAULT_MEMORY, Job
 from smash.planners.protocol import MOST_THREADS, SolveOptions
 from smash.planners.registry import get_planner, why_unknown
+from smash.problem.documents import convert, parse_toml, read_bytes
 from smash.problem.errors import MalformedFile, Unsupported
 from smash.problem.family import FAMILY
-from smash.problem.files import convert, instance_document, parse_toml, read_bytes
+from smash.problem.instance_file import instance_document
 from smash.problem.model import Instance, PlanOptions
 from smash.problem.suites import read_suite, suite_names, with_buffers
 

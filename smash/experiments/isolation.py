@@ -23,9 +23,9 @@ from smash.experiments.job import STARTUP_LIMIT, Job, Report, grace
 from smash.experiments.outcomes import OutcomeName
 from smash.planners.protocol import OnIncumbent
 from smash.problem.errors import SmashError
-from smash.problem.files import action_from_list
 from smash.problem.model import Action
 from smash.problem.plan import Incumbent, Status
+from smash.problem.plan_file import action_from_list
 from smash.problem.rules import Law, Verdict
 
 MARK = "SMASH_RUN"

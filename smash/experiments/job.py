@@ -7,7 +7,7 @@ from typing import Any
 
 from smash.experiments.outcomes import OUTCOMES, OutcomeName
 from smash.planners.protocol import SolveOptions
-from smash.problem.files import instance_document, instance_from_document
+from smash.problem.instance_file import instance_document, instance_from_document
 from smash.problem.model import Action, Instance, PlanOptions
 from smash.problem.plan import Incumbent, Plan, Status
 from smash.problem.rules import Law, Verdict

@@ -16,7 +16,7 @@ from typing import Any
 import msgspec
 
 from smash.experiments.experiment import INSTANCES, SETS, Experiment, set_directory
-from smash.problem.files import write_text
+from smash.problem.documents import write_text
 from smash.problem.suites import suite_files, suite_names
 
 EXPERIMENT = "experiment.toml"

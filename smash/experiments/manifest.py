@@ -11,7 +11,7 @@ import msgspec
 from smash.experiments.display import span
 from smash.experiments.environment import machine
 from smash.experiments.reproduce import Planned, Reproduction
-from smash.problem.files import write_text
+from smash.problem.documents import write_text
 
 MANIFEST_FORMAT = "smash-manifest/1"
 

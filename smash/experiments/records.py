@@ -16,8 +16,9 @@ from smash.experiments.job import Report
 from smash.experiments.json_lines import set_damaged_aside
 from smash.experiments.locking import hold
 from smash.problem.errors import MalformedFile
-from smash.problem.files import PLAN_FORMAT_2, instance_document, plan_document, plan_from_document
+from smash.problem.instance_file import instance_document
 from smash.problem.plan import Plan
+from smash.problem.plan_file import PLAN_FORMAT_2, plan_document, plan_from_document
 
 RUN_FORMAT = "smash-run/1"
 RUNS = "runs.jsonl"

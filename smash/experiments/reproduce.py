@@ -23,7 +23,7 @@ import msgspec
 from smash.experiments.environment import commit, load
 from smash.experiments.lifetime import end_with_parent
 from smash.experiments.steps import MadeFrom, Step, Steps, code_hash, file_hash, made_from
-from smash.problem.files import convert, read_bytes, write_text
+from smash.problem.documents import convert, read_bytes, write_text
 
 HEARTBEAT = 10.0
 """Seconds between two notes of how long a step has run, so that a kill loses no more of its time."""

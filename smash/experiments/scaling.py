@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from smash.experiments.experiment import Experiment, PlannerEntry
-from smash.problem.files import write_instance
+from smash.problem.instance_file import write_instance
 from smash.problem.open_instances import Shape, draw_instance
 
 SIZES: tuple[tuple[int, int], ...] = (

@@ -19,9 +19,9 @@ from smash.experiments.job import Job
 from smash.planners.protocol import PlanResult, why_unsupported
 from smash.planners.registry import UnknownPlanner, get_planner
 from smash.problem.errors import SmashError, Unsupported
-from smash.problem.files import action_list
 from smash.problem.model import Action
 from smash.problem.plan import STATUSES
+from smash.problem.plan_file import action_list
 
 
 def solve(job: Job, pipe: int) -> NoReturn:

@@ -21,8 +21,8 @@ import msgspec
 import smash
 from smash.experiments.environment import versions
 from smash.planners.registry import DEFAULT
+from smash.problem.documents import convert, parse_toml, read_bytes
 from smash.problem.errors import MalformedFile
-from smash.problem.files import convert, parse_toml, read_bytes
 
 PROGRAMS = {"smash": (sys.executable, "-m", "smash"), "python": (sys.executable,)}
 PACKAGES = ("coal", "matplotlib", "ompl", "pandas", "pin", "pybullet", "toppra")

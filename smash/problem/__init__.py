@@ -10,7 +10,7 @@ from smash.problem.errors import (
     SmashError,
     Unsupported,
 )
-from smash.problem.files import make_instance, read_instance, read_plan, write_instance, write_plan
+from smash.problem.instance_file import make_instance, read_instance, write_instance
 from smash.problem.lift import Lift
 from smash.problem.model import (
     TABLE,
@@ -27,6 +27,7 @@ from smash.problem.model import (
     State,
 )
 from smash.problem.plan import Incumbent, Plan, check_plan
+from smash.problem.plan_file import read_plan, write_plan
 from smash.problem.rules import Law, Verdict
 from smash.problem.topple import Topple
 

@@ -12,8 +12,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NoReturn
 
+from smash.problem.documents import read_bytes
 from smash.problem.errors import MalformedFile
-from smash.problem.files import make_instance, read_bytes
+from smash.problem.instance_file import make_instance
 from smash.problem.model import Instance, OnGoal
 from smash.problem.sexpr import Expression, parse_expression
 

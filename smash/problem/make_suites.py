@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from smash.problem.files import write_instance
+from smash.problem.instance_file import write_instance
 from smash.problem.suites import SUITES, generated_names, made_again
 
 

@@ -117,7 +117,7 @@ class Instance:
     `carriers`, `capacities` (of the aggregating actions that need one: name -> most blocks) and `costs` are what
     version 2 of the format adds; without them the actions are pick, place and topple, each at cost 1.
 
-    Build it by `smash.problem.files` or `make_instance`, which check it; the fields are then trusted.
+    Build it by `read_instance` or `make_instance`, which check it; the fields are then trusted.
     """
 
     name: str

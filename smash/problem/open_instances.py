@@ -15,8 +15,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from smash.problem.files import make_instance
 from smash.problem.generators import block_names, buffer_names, cut
+from smash.problem.instance_file import make_instance
 from smash.problem.model import Goal, Instance, OnGoal, PositionsGoal, StacksGoal
 
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from smash.problem.errors import MalformedFile
-from smash.problem.files import make_instance, read_instance
 from smash.problem.generators import generate
+from smash.problem.instance_file import make_instance, read_instance
 from smash.problem.model import TABLE, Instance
 from smash.problem.open_instances import FAMILIES, open_set
 

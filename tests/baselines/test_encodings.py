@@ -22,7 +22,7 @@ from smash.problem import (
     Unsupported,
     make_instance,
 )
-from smash.problem.files import instance_document
+from smash.problem.instance_file import instance_document
 from smash.problem.model import PositionsGoal, StacksGoal
 from tests.strategies import instances, plan_options
 

@@ -11,7 +11,7 @@ from baselines.read_up import read_up_problem
 from baselines.up_engine import SmashEngine
 from baselines.up_problem import up_problem
 from smash.problem import PlanOptions, Unsupported, make_instance, read_instance
-from smash.problem.files import instance_document
+from smash.problem.instance_file import instance_document
 from smash.problem.model import StacksGoal
 from smash.problem.suites import suite_files
 from tests.baselines.test_planners import figure_1

@@ -3,7 +3,7 @@ import sys
 
 from baselines.read_problem import read_problem_text
 from smash.problem import read_instance
-from smash.problem.files import instance_document
+from smash.problem.instance_file import instance_document
 from smash.problem.suites import suite_files
 
 

@@ -54,6 +54,8 @@ def test_a_failed_execution_exits_5_with_action_and_reason(filed):
         (["--seed", "-1"], 2),
         (["--video", "film.txt"], 2),
         (["--replay", "nowhere/r.html"], 2),
+        (["--stills", "still.txt"], 2),
+        (["--out", "nowhere/episode.json"], 2),
     ],
 )
 def test_bad_arguments_get_one_line(filed, arguments, code):

@@ -9,7 +9,7 @@ from smash.execution.recording import Recording
 from smash.execution.scene_file import default_scene
 from smash.execution.tabletop import Friction
 from smash.problem import Law, Pick, Place, PositionsGoal, make_instance
-from smash.problem.files import parse_json
+from smash.problem.documents import parse_json
 from tests.execution.episodes import buried_plan, buried_target, plan_of, swapped_pair, swapped_plan
 
 

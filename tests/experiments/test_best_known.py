@@ -21,8 +21,8 @@ from smash.planners.protocol import SolveOptions
 from smash.planners.registry import get_planner
 from smash.problem import Law, MalformedFile, PlanOptions, SmashError, Topple
 from smash.problem.certificate import certificate_text
-from smash.problem.files import plan_document, plan_text, read_plan
 from smash.problem.model import Pick, Place
+from smash.problem.plan_file import plan_document, plan_text, read_plan
 
 ROOT = Path(__file__).parents[2]
 NAME = "open-few-buffers-01"

@@ -16,7 +16,8 @@ from smash.experiments.isolation import run_isolated
 from smash.experiments.job import Job
 from smash.planners.protocol import SolveOptions
 from smash.problem.errors import SmashError
-from smash.problem.files import plan_from_document, plan_text, read_instance
+from smash.problem.instance_file import read_instance
+from smash.problem.plan_file import plan_from_document, plan_text
 
 pytestmark = pytest.mark.usefixtures("third_party")
 

@@ -22,7 +22,7 @@ from smash.problem import (
     StacksGoal,
     make_instance,
 )
-from smash.problem.files import read_instance
+from smash.problem.instance_file import read_instance
 from tests.cheapest import cheapest_plan
 from tests.strategies import family_instances, family_options
 

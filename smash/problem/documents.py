@@ -1,0 +1,136 @@
+"""Documents in and out: JSON and TOML read strictly, text written whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from smash.problem.errors import MalformedFile
+
+
+def parse_json(text: str | bytes, where: str) -> Any:
+    """Parse one JSON document; a key that stands twice in one object is refused.
+
+    Raises:
+        MalformedFile: where the text is no JSON.
+    """
+
+    def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        seen: dict[str, Any] = {}
+        for key, value in pairs:
+            if key in seen:
+                raise MalformedFile(where, f"the key {key!r} stands twice in one object")
+            seen[key] = value
+        return seen
+
+    try:
+        return json.loads(text, object_pairs_hook=unique)
+    except UnicodeDecodeError:
+        raise MalformedFile(where, "not UTF-8 text") from None
+    except RecursionError:
+        raise MalformedFile(where, "JSON nested too deeply") from None
+    except ValueError as error:
+        raise MalformedFile(where, f"not JSON: {error}") from None
+
+
+def parse_toml(content: bytes, where: str) -> dict[str, Any]:
+    """Parse one TOML document.
+
+    Raises:
+        MalformedFile: where the content is no TOML.
+    """
+    import tomllib  # planning reads none: not worth its import at every start
+
+    try:
+        return tomllib.loads(content.decode())
+    except UnicodeDecodeError:
+        raise MalformedFile(where, "not UTF-8 text") from None
+    except tomllib.TOMLDecodeError as error:
+        raise MalformedFile(where, f"not TOML: {error}") from None
+
+
+def read_bytes(path: str | os.PathLike[str]) -> bytes:
+    """Return the content of a file.
+
+    Raises:
+        MalformedFile: where it cannot be read.
+    """
+    try:
+        return Path(path).read_bytes()
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise MalformedFile(os.fspath(path), f"cannot be read: {reason}") from None
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Write a file whole or not at all (a temporary file beside it, then a rename).
+
+    Raises:
+        MalformedFile: where it cannot be written.
+    """
+    target = Path(path)
+    if not target.exists() or target.is_file():
+        temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
+        try:
+            temporary.write_text(text, encoding="utf-8")
+            temporary.replace(target)
+        except OSError as error:
+            temporary.unlink(missing_ok=True)
+            raise MalformedFile(os.fspath(path), f"cannot be written: {error.strerror}") from None
+        return
+    try:  # /dev/stdout, a pipe: nothing to rename
+        target.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise MalformedFile(os.fspath(path), f"cannot be written: {error.strerror}") from None
+
+
+def require_writable(*paths: Path | None) -> None:
+    """Refuse files whose directories are missing or closed before long work begins; None stands for no file.
+
+    Raises:
+        MalformedFile: about the first that cannot be written.
+    """
+    for path in paths:
+        if path is not None and not os.access(path.parent, os.W_OK):
+            raise MalformedFile(str(path), "cannot be written: its directory is missing or closed")
+
+
+def convert(document: Any, kind: Any, where: str) -> Any:
+    """Check a parsed document against a msgspec type; one-line `MalformedFile` where it does not fit.
+
+    Raises:
+        MalformedFile: with the place and, for an unknown key, the allowed ones.
+    """
+    try:
+        return msgspec.convert(document, kind)
+    except msgspec.ValidationError as error:
+        message = str(error).replace("`$.", "`").removeprefix("Object contains ")
+        message = message.replace("Object missing", "missing")
+        if message.startswith("unknown field") and " - at " not in message:
+            message += f"; allowed: {', '.join(field.name for field in msgspec.structs.fields(kind))}"
+        raise MalformedFile(where, message) from None
+
+
+def check_format(document: Any, where: str, *wanted: str) -> None:
+    """Refuse a document that does not say one of the wanted `format`s.
+
+    Raises:
+        MalformedFile: where it says another one or none.
+    """
+    if not isinstance(document, dict):
+        raise MalformedFile(where, f"not a JSON object; a {wanted[0]} file is one")
+    found = document.get("format")
+    if found not in wanted:
+        allowed = f"{wanted[0]!r} is" if len(wanted) == 1 else f"{' and '.join(map(repr, wanted))} are"
+        raise MalformedFile(where, f"`format`: {found!r} is not allowed; {allowed}")
+
+
+def one_key_a_line(document: Mapping[str, Any]) -> str:
+    """Return the JSON text of a document, one key a line."""
+    lines = [f" {json.dumps(key)}: {json.dumps(value)}" for key, value in document.items()]
+    return "{\n" + ",\n".join(lines) + "\n}\n"
