@@ -6,7 +6,7 @@ from collections.abc import Callable
 from time import perf_counter
 from typing import Any, ClassVar
 
-from smash.planners.astar import StateSearch
+from smash.planners.astar import BeamSearch, StateSearch
 from smash.planners.greedy import greedy_steps
 from smash.planners.indexed import Indexed
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, Relay, SolveOptions
@@ -27,12 +27,20 @@ PRECEDENCE_SHARE = 0.3
 """Share of the remaining budget for the precedence graph where the other exact methods have a chance too."""
 FEW_BLOCKS = 40
 """With more blocks than this the search over states and the layered model prove nothing more."""
+LARGE_SHARE = 0.6
+"""Share of the remaining budget for the precedence graph with more blocks: the beam gets the rest."""
+FIRST_BEAM_SHARE, FIRST_BEAM_SECONDS = 0.1, 1.0
+"""The least of both is for the beam before the exact search: a better plan lets that leave out more."""
+BEAM_SHARE = 0.5
+"""Share of what the layered model leaves for the beam; the exact search has the other half, if it can use it."""
+LAYERED_SHARE = 0.5
+"""Share of the remaining budget for the layered model."""
 
 
 class SmashPlanner(BasePlanner):
     """The best anytime answer and the best proof that the package can give, its parts combined."""
 
-    summary: ClassVar[str] = "the default: greedy, precedence graph, search over states and layered model combined"
+    summary: ClassVar[str] = "the default: greedy, precedence graph, searches over states and layered model combined"
     proves: ClassVar[bool] = True
     aggregating: ClassVar[frozenset[str]] = frozenset(FAMILY)
     weighs: ClassVar[bool] = True
@@ -96,21 +104,35 @@ class _Combined:
         """Run the parts in turn until the best plan is proven or the budget is spent."""
         self._greedy()
         search = StateSearch(self.problem, self.options, self._cost(), on_bound=lambda b: self.log.prove(b, "astar"))
-        parts: tuple[tuple[str, Callable[[], None]], ...] = (
-            ("light search", lambda: self._search(search, perf_counter() + LIGHT_SECONDS, may_compile=False)),
-            ("precedence", self._precedence),
-            ("search", lambda: self._search(search, perf_counter() + SEARCH_SHARE * self._left())),
+        beam = BeamSearch(self.problem, self.options, self._cost(), self.options.seed)
+        light = ("light search", lambda: self._search(search, perf_counter() + LIGHT_SECONDS, may_compile=False))
+        precedence = ("precedence", self._precedence)
+        exact = ("search", lambda: self._search(search, perf_counter() + SEARCH_SHARE * self._left()))
+        first_beam = ("first beam", lambda: self._beam(beam, min(FIRST_BEAM_SECONDS, FIRST_BEAM_SHARE * self._left())))
+        last: tuple[tuple[str, Callable[[], None]], ...] = (
             ("layered", self._layered),
+            ("beam", lambda: self._beam(beam, (BEAM_SHARE if search.ended is None else 1.0) * self._left())),
             ("search to the end", lambda: self._search(search, self.deadline)),
+            ("beam to the end", lambda: self._beam(beam, self._left())),
         )
         small = self.problem.blocks <= SMALL_BLOCKS
-        for name, part in (parts[0], parts[2], parts[1], *parts[3:]) if small else parts:
+        for name, part in (
+            light,
+            *((exact, precedence) if small else (precedence, first_beam, exact)),
+            *last,
+        ):
             if self.log.proven or self._left() <= 0:
                 break
             started = perf_counter()
             part()
             self.seconds[name] = perf_counter() - started
-        details: dict[str, Any] = {"expanded": search.expanded, "search": search.ended, "seconds": self.seconds}
+        details: dict[str, Any] = {
+            "expanded": search.expanded,
+            "search": search.ended,
+            "beam": beam.ended,
+            "beam_width": beam.width,
+            "seconds": self.seconds,
+        }
         return self.log.result(details=details)
 
     def _cost(self) -> int:
@@ -136,13 +158,24 @@ class _Combined:
             if self.log.proven or steps is None:
                 return
 
+    def _beam(self, beam: BeamSearch, seconds: float) -> None:
+        """Search with beams for so many seconds; where no state was left out, the best plan is optimal."""
+        until = min(perf_counter() + seconds, self.deadline)
+        beam.lower_upper(self._cost())
+        while (steps := beam.run(until)) is not None:
+            self.log.offer(self.problem.actions(steps), "beam")
+            if self.log.proven:
+                return
+        if beam.ended == "proven":
+            self.log.prove(min(beam.upper, self._cost()), "beam")
+
     def _precedence(self) -> None:
         from smash.planners.precedence.bound import ORIGIN, precedence_bound
 
         precedence_bound(
             self.instance,
             self.options,
-            perf_counter() + (PRECEDENCE_SHARE if self.problem.blocks <= FEW_BLOCKS else 1.0) * self._left(),
+            perf_counter() + (PRECEDENCE_SHARE if self.problem.blocks <= FEW_BLOCKS else LARGE_SHARE) * self._left(),
             lambda actions: self.log.offer(actions, "exact"),
             self.options.threads,
             on_bound=lambda bound: self.log.prove(bound, ORIGIN),
@@ -153,4 +186,4 @@ class _Combined:
             return
         from smash.planners.layered import LayeredPlanner
 
-        LayeredPlanner().solve(self.instance, self.options, self._left(), Relay(self.log, "milp"))
+        LayeredPlanner().solve(self.instance, self.options, LAYERED_SHARE * self._left(), Relay(self.log, "milp"))
