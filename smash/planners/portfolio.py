@@ -1,4 +1,4 @@
-"""`smash`, the default planner: greedy at once, then the exact methods, cheapest first, under one budget."""
+"""`smash`, the default planner: greedy at once, then the exact methods, cheapest first, and beams, under one budget."""
 
 from __future__ import annotations
 
@@ -29,12 +29,18 @@ FEW_BLOCKS = 40
 """With more blocks than this the search over states and the layered model prove nothing more."""
 LARGE_SHARE = 0.6
 """Share of the remaining budget for the precedence graph with more blocks: the beam gets the rest."""
-FIRST_BEAM_SHARE, FIRST_BEAM_SECONDS = 0.1, 1.0
-"""The least of both is for the beam before the exact search: a better plan lets that leave out more."""
-BEAM_SHARE = 0.5
-"""Share of what the layered model leaves for the beam; the exact search has the other half, if it can use it."""
+FIRST_SHARE, FIRST_SECONDS = 0.1, 1.0
+"""The least of both is for the first beam, and for more greedy passes, before the exact search: a better plan lets
+that leave out more."""
+WIDE_SEARCH_SHARE, LARGE_SEARCH_SHARE = 0.4, 0.2
+"""The share of the search over states where a beam is likelier to help: more than `SMALL_BLOCKS`, `FEW_BLOCKS`."""
+BEAM_SHARE = 0.7
+"""Share of what the layered model leaves for the beam; the exact search has the rest, if it can use it."""
 LAYERED_SHARE = 0.5
 """Share of the remaining budget for the layered model."""
+
+Part = tuple[str, Callable[[], None]]
+"""A part of the solve with its name."""
 
 
 class SmashPlanner(BasePlanner):
@@ -105,22 +111,7 @@ class _Combined:
         self._greedy()
         search = StateSearch(self.problem, self.options, self._cost(), on_bound=lambda b: self.log.prove(b, "astar"))
         beam = BeamSearch(self.problem, self.options, self._cost(), self.options.seed)
-        light = ("light search", lambda: self._search(search, perf_counter() + LIGHT_SECONDS, may_compile=False))
-        precedence = ("precedence", self._precedence)
-        exact = ("search", lambda: self._search(search, perf_counter() + SEARCH_SHARE * self._left()))
-        first_beam = ("first beam", lambda: self._beam(beam, min(FIRST_BEAM_SECONDS, FIRST_BEAM_SHARE * self._left())))
-        last: tuple[tuple[str, Callable[[], None]], ...] = (
-            ("layered", self._layered),
-            ("beam", lambda: self._beam(beam, (BEAM_SHARE if search.ended is None else 1.0) * self._left())),
-            ("search to the end", lambda: self._search(search, self.deadline)),
-            ("beam to the end", lambda: self._beam(beam, self._left())),
-        )
-        small = self.problem.blocks <= SMALL_BLOCKS
-        for name, part in (
-            light,
-            *((exact, precedence) if small else (precedence, first_beam, exact)),
-            *last,
-        ):
+        for name, part in self._parts(search, beam):
             if self.log.proven or self._left() <= 0:
                 break
             started = perf_counter()
@@ -135,6 +126,23 @@ class _Combined:
         }
         return self.log.result(details=details)
 
+    def _parts(self, search: StateSearch, beam: BeamSearch) -> tuple[Part, ...]:
+        """Return the parts in their order, which depends on the size."""
+        light = ("light search", lambda: self._search(search, perf_counter() + LIGHT_SECONDS, may_compile=False))
+        precedence = ("precedence", self._precedence)
+        passes = ("greedy passes", self._greedy_passes)
+        first_beam = ("first beam", lambda: self._beam(beam, min(FIRST_SECONDS, FIRST_SHARE * self._left())))
+        exact = ("search", lambda: self._search(search, perf_counter() + self._search_share() * self._left()))
+        small = self.problem.blocks <= SMALL_BLOCKS
+        return (
+            light,
+            *((exact, precedence) if small else (precedence, passes, first_beam, exact)),
+            ("layered", self._layered),
+            ("beam", lambda: self._beam(beam, (BEAM_SHARE if search.ended is None else 1.0) * self._left())),
+            ("search to the end", lambda: self._search(search, self.deadline)),
+            ("beam to the end", lambda: self._beam(beam, self._left())),
+        )
+
     def _cost(self) -> int:
         assert self.log.cost is not None
         return self.log.cost
@@ -146,6 +154,17 @@ class _Combined:
         until = perf_counter() + GREEDY_SHARE * self.budget
         for steps in greedy_steps(self.problem, self.options, until, self.options.seed):
             self.log.offer(self.problem.actions(steps), "greedy")
+
+    def _greedy_passes(self) -> None:
+        """Give the greedy planner some more passes: cheap, and what helps most where locations are few."""
+        until = perf_counter() + min(FIRST_SECONDS, FIRST_SHARE * self._left())
+        for steps in greedy_steps(self.problem, self.options, until, self.options.seed, patient=True):
+            self.log.offer(self.problem.actions(steps), "greedy")
+
+    def _search_share(self) -> float:
+        if self.problem.blocks <= SMALL_BLOCKS:
+            return SEARCH_SHARE
+        return WIDE_SEARCH_SHARE if self.problem.blocks <= FEW_BLOCKS else LARGE_SEARCH_SHARE
 
     def _search(self, search: StateSearch, until: float, may_compile: bool = True) -> None:
         """Search over states until `until` [s, clock of `perf_counter`]."""
