@@ -123,7 +123,7 @@ def test_a_beam_that_left_nothing_out_proves_the_plan_under_its_own_name(monkeyp
     monkeypatch.setattr("smash.planners.portfolio._Combined._search", lambda self, *_, **__: None)
     monkeypatch.setattr("smash.planners.portfolio._Combined._precedence", lambda self: None)
     monkeypatch.setattr("smash.planners.portfolio._Combined._layered", lambda self: None)
-    instance = next(generate("multi", 5, 0, 1, 4))
+    instance = next(generate("multi", 6, 0, 1, 4))
     result = SmashPlanner().solve(instance, SolveOptions(topple=False), 20)
     assert (result.status, result.bound_origin) == ("optimal", "beam")
     assert result.cost == optimal_cost(instance, PlanOptions(topple=False))
