@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import random
 from collections.abc import Iterator, Sequence
 from time import perf_counter
@@ -23,6 +24,8 @@ PASSES = 12
 """Passes after the first one, each with what the best plan so far taught (its times, its topples)."""
 NOISE = 0.6
 """How much a pass's choices are disturbed, at most."""
+LATER_NOISE = (0.3, 0.6, 1.0, 2.0)
+"""The same for the passes after those, in turn."""
 
 
 class GreedyPlanner(BasePlanner):
@@ -73,7 +76,9 @@ def twin_plans(
             yield tuple(from_twin(instance, problem.actions(steps)))
 
 
-def greedy_steps(problem: Indexed, options: PlanOptions, deadline: float, seed: int = 0) -> Iterator[list[Step]]:
+def greedy_steps(
+    problem: Indexed, options: PlanOptions, deadline: float, seed: int = 0, *, patient: bool = False
+) -> Iterator[list[Step]]:
     """Yield plans, each better than the one before; none at all only where no plan exists.
 
     Args:
@@ -82,6 +87,7 @@ def greedy_steps(problem: Indexed, options: PlanOptions, deadline: float, seed: 
         deadline: when to stop improving, on the clock of `perf_counter` [s]; the first plan always comes, and no
             pass is begun that would not end in time.
         seed: for the passes with disturbed choices.
+        patient: whether to go on with disturbed passes until `deadline`.
     """
     state = State.start_of(problem.instance)
     if Law(problem.instance, options).goal_shortfall(state) is None:
@@ -94,18 +100,21 @@ def greedy_steps(problem: Indexed, options: PlanOptions, deadline: float, seed: 
         return
     target = target_piles(problem)
     if target is not None:
-        yield from _Passes(problem, target, options, deadline, seed).improving()
+        yield from _Passes(problem, target, options, deadline, seed, patient).improving()
 
 
 class _Passes:
     """Passes of `Construction`, each disturbed otherwise, from what the best one taught."""
 
-    def __init__(self, problem: Indexed, target: Piles, options: PlanOptions, deadline: float, seed: int) -> None:
+    def __init__(
+        self, problem: Indexed, target: Piles, options: PlanOptions, deadline: float, seed: int, patient: bool
+    ) -> None:
         self.problem = problem
         self.target = target
         self.topple = options.topple
         self.cap = options.max_topple or max(1, problem.blocks)
         self.deadline = deadline
+        self.patient = patient
         self.draw = random.Random(seed)
         self.best: list[Step] = []
         self.due: Sequence[float] = self._heights()
@@ -132,6 +141,8 @@ class _Passes:
                 yield sorted(self.toppled - {stack}), 0.0
         for number in range(PASSES):
             yield (), NOISE * number / PASSES
+        for noise in itertools.cycle(LATER_NOISE if self.patient else ()):
+            yield (), noise
 
     def _better(self, first: Sequence[int], noise: float = 0.0) -> bool:
         """Make one pass; keep its plan, times and topples if it is the best so far."""

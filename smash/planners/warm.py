@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from smash.planners.astar.driver import warm_up
+from smash.planners.astar.compiler import warm_up
 
 if __name__ == "__main__":
     warm_up()

@@ -5,7 +5,7 @@ from time import perf_counter
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 
-from smash.planners.astar import AStarPlanner, StateSearch, driver
+from smash.planners.astar import AStarPlanner, StateSearch, driver, engine
 from smash.planners.indexed import Indexed, cost_of
 from smash.planners.protocol import SolveOptions
 from smash.problem import Law, PlanOptions, StacksGoal, make_instance
@@ -73,15 +73,15 @@ def test_six_blocks_without_buffers_are_proven(topple):
 
 
 def test_the_plan_of_a_solved_start_is_found_where_the_machine_code_is_there_at_once(monkeypatch):
-    monkeypatch.setattr(driver._Compiler, "started", lambda: True)
-    monkeypatch.setattr(driver._Compiler, "code", lambda deadline: driver.INTERPRETED)
+    monkeypatch.setattr(driver.Compiler, "started", lambda: True)
+    monkeypatch.setattr(driver.Compiler, "code", lambda deadline: driver.INTERPRETED)
     instance = make_instance(name="none", blocks=[], stacks=["s1"], start={}, goal=StacksGoal({}))
     assert searched(instance, PlanOptions(), LOOSE)[2] == []
 
 
 @pytest.mark.slow
 def test_compiled_and_interpreted_search_expand_the_same_nodes(monkeypatch):
-    monkeypatch.setattr(driver, "WORK", {False: 1, True: 1})
+    monkeypatch.setattr(engine, "WORK", {False: 1, True: 1})
     for instance in generate("multi", 8, 0, 6, 3):
         counts = []
         for nodes in (1_000_000, 1):

@@ -6,8 +6,10 @@ from time import perf_counter
 import pytest
 from hypothesis import given, settings
 
-from smash.planners.greedy import GreedyPlanner
+from smash.planners.greedy import GreedyPlanner, greedy_steps
+from smash.planners.indexed import Indexed, cost_of
 from smash.planners.protocol import SolveOptions
+from smash.problem import PlanOptions
 from smash.problem.generators import generate
 from smash.problem.suites import read_suite
 from tests.oracle import optimal_cost
@@ -62,3 +64,11 @@ def test_no_pass_is_begun_that_would_end_after_the_budget():
     began = perf_counter()
     first = next(iter(GreedyPlanner().solve(instance, SolveOptions(topple=False), 1e-9).incumbents))
     assert first.seconds <= perf_counter() - began < 3 * first.seconds + 0.5
+
+
+def test_patient_passes_go_on_to_the_deadline_and_only_improve():
+    problem = Indexed.of(next(generate("multi", 20, 0, 1, 0)))
+    started = perf_counter()
+    costs = [cost_of(steps) for steps in greedy_steps(problem, PlanOptions(topple=False), started + 0.3, patient=True)]
+    assert 0.1 < perf_counter() - started < 0.8
+    assert costs == sorted(set(costs), reverse=True)

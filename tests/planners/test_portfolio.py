@@ -103,3 +103,27 @@ def test_two_locations_without_topple_are_refused_with_the_proof():
     result = SmashPlanner().solve(instance, SolveOptions(topple=False), 1)
     assert (result.status, result.bound_origin) == ("infeasible", "feasibility")
     assert SmashPlanner().solve(instance, SolveOptions(), 1).cost == optimal_cost(instance, PlanOptions())
+
+
+def test_what_the_beam_found_and_proved_is_reported_at_once():
+    instance = next(generate("multi", 13, 0, 1, 4))
+    SmashPlanner().prepare()
+    seen = []
+    result = SmashPlanner().solve(
+        instance, SolveOptions(topple=False), 4, lambda seconds, cost, plan: seen.append((cost, plan))
+    )
+    origins = {incumbent.origin for incumbent in result.incumbents}
+    assert origins <= {"greedy", "exact", "milp", "beam"}
+    assert [cost for cost, _ in seen] == [incumbent.cost for incumbent in result.incumbents]
+    assert all(Law(instance, PlanOptions(topple=False)).check(plan).accepted for _, plan in seen)
+    assert result.lower_bound <= result.cost
+
+
+def test_a_beam_that_left_nothing_out_proves_the_plan_under_its_own_name(monkeypatch):
+    monkeypatch.setattr("smash.planners.portfolio._Combined._search", lambda self, *_, **__: None)
+    monkeypatch.setattr("smash.planners.portfolio._Combined._precedence", lambda self: None)
+    monkeypatch.setattr("smash.planners.portfolio._Combined._layered", lambda self: None)
+    instance = next(generate("multi", 6, 0, 1, 4))
+    result = SmashPlanner().solve(instance, SolveOptions(topple=False), 20)
+    assert (result.status, result.bound_origin) == ("optimal", "beam")
+    assert result.cost == optimal_cost(instance, PlanOptions(topple=False))

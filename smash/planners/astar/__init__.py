@@ -1,6 +1,7 @@
-"""Exact search over states (A*), for few buffers and for whatever the precedence graph leaves open."""
+"""Search over states: exact (A*) for few buffers and what the precedence graph leaves open, else by beams."""
 
+from smash.planners.astar.beam import BeamSearch
 from smash.planners.astar.driver import StateSearch
 from smash.planners.astar.planner import AStarPlanner
 
-__all__ = ["AStarPlanner", "StateSearch"]
+__all__ = ["AStarPlanner", "BeamSearch", "StateSearch"]

@@ -11,21 +11,23 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from smash.planners.astar import bound, moves, search, state
+from smash.planners.astar import bound, layer, moves, search, state
 
-MODULES = (state, bound, moves, search)
+MODULES = (state, bound, moves, search, layer)
 
 
 class Code(NamedTuple):
-    """What the driver calls."""
+    """What the drivers call."""
 
     unpack: Callable[..., None]
     settle: Callable[..., int]
     apply_move: Callable[..., int]
     lower_bound: Callable[..., int]
     file_state: Callable[..., bool]
+    file_node: Callable[..., int]
     file_again: Callable[..., None]
     expand_some: Callable[..., int]
+    expand_layer: Callable[..., int]
 
 
 INTERPRETED = Code(
@@ -34,8 +36,10 @@ INTERPRETED = Code(
     state.apply_move,
     bound.lower_bound,
     search.file_state,
+    search.file_node,
     search.file_again,
     search.expand_some,
+    layer.expand_layer,
 )
 
 

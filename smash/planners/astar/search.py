@@ -14,6 +14,8 @@ NODES, UPPER, BEST, FLOOR, EXPANDED = range(5)
 from outside); the least estimate among the open nodes; nodes expanded."""
 RUNNING, PROVEN, FULL = range(3)
 """What `expand_some` ends with: its share is done; no cheaper plan exists; the store is full."""
+DROPPED, NO_ROOM = -1, -2
+"""What `file_node` returns where it files nothing that is to be expanded."""
 MASK = (1 << 40) - 1
 
 
@@ -40,28 +42,45 @@ class Store(NamedTuple):
 
 
 def file_state(task: Task, cells: Ints, store: Store, parent: int, cost: int, moved: int, code: int) -> bool:
-    """File the state in hand, settled first, unless it is known as cheap or leads to no better plan.
+    """File the state in hand in its bucket, settled first, unless it is known as cheap or leads to no better plan.
 
     Returns:
         Whether there was room.
     """
+    least = store.shape[0]
+    if parent >= 0 and store.estimate[parent] > least:
+        least = store.estimate[parent]
+    node = file_node(task, cells, store, parent, cost, moved, code, least)
+    if node < 0:
+        return node != NO_ROOM
+    estimate = store.estimate[node]
+    bucket = (estimate - store.shape[0]) * store.shape[1] + estimate - store.cost[node]
+    store.following[node] = store.heads[bucket]
+    store.heads[bucket] = node
+    return True
+
+
+def file_node(task: Task, cells: Ints, store: Store, parent: int, cost: int, moved: int, code: int, least: int) -> int:
+    """File the state in hand, settled first, as a node; `least` is a bound on the plans through its parent.
+
+    Returns:
+        The node; DROPPED where the state is known as cheap, leads to no better plan or is a goal; or NO_ROOM.
+    """
     cost += 2 * settle(task, cells)
     counters = store.counters
-    estimate = max(cost + lower_bound(task, cells), store.shape[0])
-    if parent >= 0 and store.estimate[parent] > estimate:
-        estimate = store.estimate[parent]
+    estimate = max(cost + lower_bound(task, cells), least)
     if estimate >= counters[UPPER]:
-        return True
+        return DROPPED
     blocks = task.blocks
     node = counters[NODES]
     if node == store.shape[2]:
-        return False
+        return NO_ROOM
     pack(task, cells, store.states, node * blocks)
     place = _place_of(store, blocks, node)
     known = store.table[place] - 1
     if known >= 0:
         if store.cost[known] <= cost:
-            return True
+            return DROPPED
         store.stale[known] = 1
     store.table[place] = node + 1
     store.cost[node] = cost
@@ -74,11 +93,8 @@ def file_state(task: Task, cells: Ints, store: Store, parent: int, cost: int, mo
     if is_goal(task, cells):
         counters[UPPER] = cost
         counters[BEST] = node
-        return True
-    bucket = (estimate - store.shape[0]) * store.shape[1] + estimate - cost
-    store.following[node] = store.heads[bucket]
-    store.heads[bucket] = node
-    return True
+        return DROPPED
+    return int(node)
 
 
 def _place_of(store: Store, blocks: int, node: int) -> int:
