@@ -59,18 +59,18 @@ scoop: $(STAMP) ## the paper's scoop: pick and place alone, with topple, scoop, 
 	$(BIN)/python -m smash episodes runs/scoop --label smash --seeds 3 --scene examples/scoop-scene.toml --replays --jobs 2
 	$(BIN)/python -m analysis.scoop runs/scoop
 
-friction: $(STAMP) ## the same plans under other friction, and topples by size (about 15 minutes on 2 cores)
+friction: $(STAMP) ## the same plans under other friction, and topples by size (about 25 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/friction.toml --out runs/friction
 	$(BIN)/python -m smash episodes runs/friction --policy replan --policy open --jobs 2
-	$(BIN)/python -m smash topple-map --highest-cut 3 --out runs/friction/default
+	$(BIN)/python -m smash topple-map --highest-cut 3 --jobs 2 --out runs/friction/default
 	for scene in $(SCENES); do \
 	  $(BIN)/python -m smash episodes runs/friction --policy replan --policy open --jobs 2 --scene experiments/scenes/$$scene.toml && \
-	  $(BIN)/python -m smash topple-map --highest-cut 3 --scene experiments/scenes/$$scene.toml --out runs/friction/$$scene \
+	  $(BIN)/python -m smash topple-map --highest-cut 3 --jobs 2 --scene experiments/scenes/$$scene.toml --out runs/friction/$$scene \
 	    || exit 1; done
 	$(BIN)/python -m analysis.execution_sweeps runs/friction $(addprefix runs/friction/,default $(SCENES))
 
 topple-map: $(STAMP) ## where toppled blocks land, per cut height and number (minutes)
-	$(BIN)/python -m smash topple-map --out runs/topple-map
+	$(BIN)/python -m smash topple-map --jobs 2 --out runs/topple-map
 
 bench: $(STAMP) ## first plans, proofs, HiGHS against Gurobi, hundreds of blocks: the README's tables (3 minutes)
 	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt gurobipy

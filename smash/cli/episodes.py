@@ -20,7 +20,7 @@ from smash.experiments.episodes import (
     run_all,
 )
 from smash.experiments.records import Records
-from smash.problem.errors import SmashError
+from smash.problem.errors import Interrupted
 
 SECONDS_AN_EPISODE = 5.0
 """Wall time of a typical episode on one core, for the estimate [s]."""
@@ -92,9 +92,5 @@ def command(
 
         run_all(runs, records, jobs, stop, ended)
         if stop.is_set():
-            raise _Interrupted("interrupted; every finished episode is recorded, start again to do the rest")
+            raise Interrupted("interrupted; every finished episode is recorded, start again to do the rest")
     click.echo(f"{len(runs)} episodes recorded in {results / EPISODES}")
-
-
-class _Interrupted(SmashError):
-    exit_code = 130

@@ -18,16 +18,12 @@ from smash.experiments.locking import hold
 from smash.experiments.manifest import write_manifest
 from smash.experiments.reproduce import Planned, Record, Reproduction, last_line
 from smash.experiments.steps import read_steps
-from smash.problem.errors import MalformedFile, SmashError
+from smash.problem.errors import Interrupted, MalformedFile, SmashError
 
 EXPERIMENTS = Path(smash.__file__).parent.parent / "experiments"
 LEFT = ("to do", "continued", "stale")
 SECONDS_BETWEEN_LINES = 30.0
 """How often a line says how a step goes where no terminal shows it."""
-
-
-class _Interrupted(SmashError):
-    exit_code = 130
 
 
 class _StepFailed(SmashError):
@@ -75,7 +71,7 @@ def command(
         if copy_to is not None:
             _copy(reproduction, planned, files, copy_to)
         if stop.is_set():
-            raise _Interrupted("interrupted; start again to go on")
+            raise Interrupted("interrupted; start again to go on")
     _end(planned, files)
 
 

@@ -35,6 +35,10 @@ from smash.problem.topple import Topple
 TRIAL_FORMAT = "smash-topple-trial/1"
 
 
+Key = tuple[str, int, int, int, int]
+"""What tells a trial from the others: scene, stack, height of the cut, number falling, seed."""
+
+
 class Landing(msgspec.Struct, frozen=True):
     """Where one block came to rest, in the push's frame, from the pile's middle [m]; whether it can be grasped."""
 
@@ -70,7 +74,7 @@ class Trial(msgspec.Struct, frozen=True, kw_only=True):
     problem: str = ""
 
     @property
-    def key(self) -> tuple[str, int, int, int, int]:
+    def key(self) -> Key:
         """What tells a trial from the others."""
         return self.scene, self.stack, self.height, self.falling, self.seed
 

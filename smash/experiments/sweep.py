@@ -19,17 +19,11 @@ from smash.experiments.environment import load
 from smash.experiments.experiment import Run
 from smash.experiments.isolation import run_isolated
 from smash.experiments.records import Records, record_of
-from smash.problem.errors import SmashError
+from smash.problem.errors import Interrupted, SmashError
 
 Record = dict[str, Any]
 _Future = Future[Record | None]
 _Ended = queue.SimpleQueue[_Future]
-
-
-class Interrupted(SmashError):
-    """The sweep was stopped; what had finished is recorded."""
-
-    exit_code = 130
 
 
 class WorkersLost(SmashError):

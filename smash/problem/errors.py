@@ -30,6 +30,12 @@ class Unsupported(SmashError):
     exit_code = 6
 
 
+class Interrupted(SmashError):
+    """Long work was stopped by its user; what had finished is recorded."""
+
+    exit_code = 130
+
+
 class PlannerCrashed(SmashError):
     """A planner ended abnormally or hit its memory limit."""
 

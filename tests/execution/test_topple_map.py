@@ -1,3 +1,8 @@
+import signal
+import subprocess
+import sys
+
+import psutil
 import pytest
 from click.testing import CliRunner
 
@@ -81,3 +86,18 @@ def test_a_map_that_was_killed_while_writing_goes_on(tmp_path):
     assert ended.exit_code == 0, ended.exception
     assert "was damaged: set aside" in ended.stderr
     assert (tmp_path / "trials.jsonl").read_bytes() == whole
+
+
+@pytest.mark.slow
+def test_a_map_that_was_interrupted_keeps_its_trials_and_leaves_no_process(tmp_path):
+    command = [sys.executable, "-m", "smash", "topple-map", "--jobs", "2", "--seeds", "9", "--out", str(tmp_path)]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as running:
+        assert running.stderr.readline().startswith("[1/")
+        workers = psutil.Process(running.pid).children(recursive=True)
+        running.send_signal(signal.SIGINT)
+        rest = running.communicate(timeout=30)[1].splitlines()
+    assert running.returncode == 130
+    assert rest[-1].endswith("start again to do the rest")
+    assert workers
+    assert not psutil.wait_procs(workers, timeout=10)[1]
+    assert (tmp_path / "trials.jsonl").read_text().count("\n") >= 1
