@@ -66,12 +66,23 @@ def command(
     tabletop = default_scene() if scene is None else read_scene(scene)
     tabletop.bind(problem)
     from smash.execution.capture import Capture
-    from smash.execution.episode import episode_text
+    from smash.execution.episode import Performed, episode_text
     from smash.execution.executor import Executor
     from smash.execution.policy import OPEN
     from smash.experiments.replanning import replanner as make_replanner
 
     capture = Capture(replay=replay, video=video, stills=stills, trajectory=trajectory)
+    from rich.console import Console
+    from rich.markup import escape
+
+    status = Console(stderr=True).status("planning motions")
+    planned = len(filed.actions or ())
+
+    def shown(row: Performed) -> None:
+        status.update(
+            f"step {row.step} of {planned if row.origin == 'plan' else '?'}: {' '.join(map(str, row.action))}"
+        )
+
     executor = Executor(
         problem,
         filed,
@@ -81,9 +92,13 @@ def command(
         replanner=None if no_replan else make_replanner(replanner or filed.planner, budget, seed),
         gui=gui,
         on_frame=capture.frame,
+        on_step=shown,
     )
-    episode = executor.run()
-    capture.finish(executor, episode)
+    with status:
+        episode = executor.run()
+        if capture.files:
+            status.update(escape(f"writing {', '.join(map(str, capture.files))}"))
+        capture.finish(executor, episode)
     text = episode_text(episode)
     click.echo(text, nl=False)
     if out is not None:

@@ -49,6 +49,11 @@ class Capture:
         self.recording = Recording()
 
     @property
+    def files(self) -> list[Path]:
+        """What is asked for."""
+        return [path for path in (self.replay, self.video, self.stills, self.trajectory) if path is not None]
+
+    @property
     def frame(self) -> Frame | None:
         """What the executor calls at each frame; None where nothing needs frames."""
         return self.recording.take if self.replay or self.video or self.stills else None

@@ -54,6 +54,7 @@ class Executor:
         replanner: Plans the task anew from what is observed.
         gui: Open PyBullet's window.
         on_frame: Called with the world 25 times a simulated second.
+        on_step: Called with each action before it is carried out.
     """
 
     def __init__(
@@ -67,6 +68,7 @@ class Executor:
         replanner: Replanner | None = None,
         gui: bool = False,
         on_frame: Frame | None = None,
+        on_step: Callable[[Performed], object] | None = None,
     ) -> None:
         self.instance = instance
         self.plan = plan
@@ -84,6 +86,7 @@ class Executor:
         self.task_seconds = 0.0
         self._gui = gui
         self._on_frame = on_frame
+        self._on_step = on_step
 
     def run(self) -> Episode:
         """Carry out the plan and judge the result."""
@@ -155,6 +158,8 @@ class Executor:
             row.times = Times(offline=task.seconds, offline_cpu=task.cpu_seconds)
         else:
             row.times = Times(online=task.seconds, online_cpu=task.cpu_seconds)
+        if self._on_step is not None:
+            self._on_step(row)
         row.gap = origin != "recovery" and task.segments is None and task.problem is None
         begun = row.begun = self.world.time
         try:
