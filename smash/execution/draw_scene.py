@@ -39,6 +39,8 @@ def draw(tabletop: Tabletop, path: Path) -> None:
     axis.set(xlim=(-0.85, 0.85), ylim=(-0.85, 0.85), xlabel="x [m]", ylabel="y [m]")
     axis.set_title(f"Scene {tabletop.name!r}: blocks of {100 * tabletop.side:.1f} cm, to scale")
     trays = [Patch(facecolor="none", edgecolor=TRAY, label="station of a tray")] if tabletop.stations else []
+    has_second = any(len(slot.directions) > 1 for slot in tabletop.stacks)
+    second = [Patch(facecolor=STRIP, alpha=0.12, label="the same, second choice")] if has_second else []
     figure.legend(
         handles=[
             *trays,
@@ -46,6 +48,7 @@ def draw(tabletop: Tabletop, path: Path) -> None:
             Patch(color=STACK, label="stack"),
             Patch(color=BUFFER, label="buffer"),
             Patch(color=STRIP, alpha=0.35, label=f"landing strip, {FALLING} blocks"),
+            *second,
             Patch(color="#eef3ee", label="reached from above at all heights"),
         ],
         loc="outside lower center",
