@@ -8,6 +8,7 @@ from time import perf_counter
 import click
 
 from smash.cli import fail
+from smash.cli.choices import SECONDS
 from smash.problem.certificate import certificate_text
 from smash.problem.documents import write_text
 from smash.problem.feasibility import why_infeasible
@@ -20,7 +21,7 @@ from smash.problem.plan_file import read_plan
 @click.argument("plan", type=click.Path(path_type=Path))
 @click.option(
     "--budget",
-    type=click.FloatRange(min=0, min_open=True),
+    type=SECONDS,
     default=30.0,
     show_default=True,
     metavar="SECONDS",

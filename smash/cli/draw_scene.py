@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
+from smash.problem.documents import require_writable
 
 
 @click.command("draw-scene")
@@ -27,6 +28,7 @@ def command(scene: Path | None, out: Path | None, height: int, buffer_height: in
     from smash.execution.draw_scene import draw
     from smash.execution.scene_file import default_scene, read_scene
 
+    require_writable(out)
     tabletop = default_scene() if scene is None else read_scene(scene)
     if out is not None:
         if out.suffix not in (".png", ".pdf", ".svg"):

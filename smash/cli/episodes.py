@@ -77,6 +77,9 @@ def command(
             words = "was damaged: set aside, its episode is carried out again"
             click.echo(f"the last line of {records.path} {words}", err=True)
         click.echo(f"{len(runs)} episodes, {left} left, about {about} with {jobs} at a time", err=True)
+        bare = sum(run.key in records.finished and not Path(run.replay).exists() for run in runs if run.replay)
+        if bare:
+            click.echo(f"{bare} recorded earlier have no replay: `smash execute --replay` makes one", err=True)
         if dry_run:
             return
         note_asked(results, seeds, policies, scene, labels)

@@ -7,6 +7,8 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
+from smash.cli.choices import SECONDS
+from smash.cli.signals import ended_by_signals
 from smash.problem.documents import require_writable, write_text
 from smash.problem.instance_file import read_instance
 from smash.problem.plan import check_plan
@@ -16,13 +18,15 @@ from smash.problem.plan_file import read_plan
 @click.command("execute")
 @click.argument("instance", type=click.Path(path_type=Path))
 @click.argument("plan", type=click.Path(path_type=Path))
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of the blocks' start poses.")
+@click.option(
+    "--seed", type=click.IntRange(0, 2**31 - 1), default=0, show_default=True, help="Of the blocks' start poses."
+)
 @click.option("--scene", type=click.Path(path_type=Path), help="Scene file (default: the built-in scene).")
 @click.option("--no-replan", is_flag=True, help="The paper's open pipeline: the first failure ends the episode.")
 @click.option("--replanner", metavar="NAME", help="Planner to replan with (default: the plan's own, else greedy).")
 @click.option(
     "--budget",
-    type=click.FloatRange(min=0, min_open=True, max=1e9),
+    type=SECONDS,
     default=10.0,
     show_default=True,
     metavar="SECONDS",
@@ -56,7 +60,9 @@ def command(
       smash execute examples/figure1.json plan.json --replay episode.html
       smash execute examples/figure1.json plan.json --seed 3 --no-replan
     """
-    require_writable(out)
+    require_writable(replay, video, stills, trajectory, out)
+    if replanner is not None:
+        _require_planner(replanner, no_replan)
     problem, filed = read_instance(instance), read_plan(plan)
     verdict = check_plan(problem, filed)
     if not verdict.accepted:
@@ -94,16 +100,25 @@ def command(
         on_frame=capture.frame,
         on_step=shown,
     )
-    with status:
-        episode = executor.run()
-        if capture.files:
-            status.update(escape(f"writing {', '.join(map(str, capture.files))}"))
-        capture.finish(executor, episode)
-    text = episode_text(episode)
-    click.echo(text, nl=False)
-    if out is not None:
-        write_text(out, text)
+    with ended_by_signals():
+        with status:
+            episode = executor.run()
+        text = episode_text(episode)
+        click.echo(text, nl=False)
+        if out is not None:
+            write_text(out, text)
+        with Console(stderr=True).status(escape(f"writing {', '.join(map(str, capture.files))}")):
+            capture.finish(executor, episode)
     if episode.failure is not None:
         failure = episode.failure
         done = "nothing" if failure.action is None else " ".join(map(str, failure.action))
         fail(f"{instance}: execution failed at step {failure.step} ({done}): {failure.name}: {failure.reason}", 5)
+
+
+def _require_planner(name: str, no_replan: bool) -> None:
+    """Refuse a planner to replan with that is not there, before anything moves."""
+    if no_replan:
+        raise click.UsageError("--replanner goes without --no-replan")
+    from smash.planners.registry import get_planner
+
+    get_planner(name)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from smash.cli.choices import SECONDS
 from smash.experiments.frontier import FrontierPoint, fewest_buffers, frontier
 from smash.planners.registry import DEFAULT, get_planner
 from smash.problem.errors import MalformedFile
@@ -27,7 +28,7 @@ VARIANTS = ((False, "without topple"), (True, "with topple"))
 @click.option("--most", type=click.IntRange(min=0), default=12, show_default=True, metavar="B", help="Most buffers.")
 @click.option("--planner", default=DEFAULT, show_default=True, metavar="NAME", help="What solves; it should prove.")
 @click.option("--max-topple", type=click.IntRange(min=1), metavar="M", help="At most M blocks in one topple.")
-@click.option("--budget", type=click.FloatRange(min=0, min_open=True), default=30.0, show_default=True, metavar="S")
+@click.option("--budget", type=SECONDS, default=30.0, show_default=True, metavar="S")
 @click.option("--instances", type=click.IntRange(min=1), metavar="K", help="Only the first K of a suite.")
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Write frontier.csv, .png and .pdf here.")
 def command(

@@ -11,7 +11,7 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
-from smash.cli.choices import without_option
+from smash.cli.choices import SECONDS, without_option
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.isolation import run_isolated
 from smash.experiments.job import DEFAULT_MEMORY, Job, Report
@@ -36,7 +36,7 @@ from smash.problem.plan_file import plan_text
 @without_option
 @click.option(
     "--budget",
-    type=click.FloatRange(min=0, min_open=True, max=1e9),
+    type=SECONDS,
     default=30.0,
     show_default=True,
     metavar="SECONDS",
@@ -99,6 +99,8 @@ def _trusted(estimates: Path, max_topple: int | None) -> int:
     from smash.execution.estimates import read_estimates
 
     trusted = read_estimates(estimates).trusted_size()
+    if not trusted:
+        click.echo(f"{estimates}: no topple is trusted; planning without", err=True)
     return trusted if max_topple is None else min(trusted, max_topple)
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from smash.cli.choices import SECONDS
 from smash.cli.sweep import installed_runs, run_all
 from smash.experiments.experiment import INSTANCES
 from smash.experiments.keep import keep
@@ -19,7 +20,7 @@ from smash.experiments.scaling import LARGEST, SIZES, scaling_experiment, write_
 @click.option("--count", type=click.IntRange(min=1), default=3, show_default=True, help="Instances a size.")
 @click.option(
     "--budget",
-    type=click.FloatRange(min=0, min_open=True),
+    type=SECONDS,
     default=20.0,
     show_default=True,
     metavar="SECONDS",

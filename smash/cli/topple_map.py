@@ -34,7 +34,7 @@ def command(highest_cut: int, most: int, seeds: int, scene: Path | None, jobs: i
     Example:
       smash topple-map --highest-cut 3 --most 5 --jobs 2
     """
-    from smash.execution.estimates import write_estimates
+    from smash.execution.estimates import ENOUGH, TRUSTED, write_estimates
     from smash.execution.scene_file import default_scene, read_scene
     from smash.execution.topple_map import draw, estimates
     from smash.experiments.topple_trials import read_trials, run_trials, wanted_trials
@@ -61,4 +61,6 @@ def command(highest_cut: int, most: int, seeds: int, scene: Path | None, jobs: i
     found = estimates(tabletop.name, chosen)
     write_estimates(found, out / "estimates.json")
     draw(chosen, out / "map.png")
-    click.echo(f"{len(chosen)} trials in {out}; suggested --max-topple {found.suggested_max_topple}")
+    suggested = found.suggested_max_topple
+    none = f"none is trusted: {ENOUGH} trials of a size or more, {TRUSTED:.0%} of them successful, are needed"
+    click.echo(f"{len(chosen)} trials in {out}; " + (f"suggested --max-topple {suggested}" if suggested else none))

@@ -14,14 +14,14 @@ from smash.execution.recording import Recording
 from smash.execution.tabletop import Tabletop
 from smash.execution.trajectory_file import write_trajectory
 from smash.execution.world import Frame
-from smash.problem.documents import require_writable
+from smash.problem.documents import replacing
 from smash.problem.errors import MalformedFile
 
 FILMS = (".mp4", ".gif")
 PICTURES = (".png", ".pdf", ".svg", ".jpg")
 """How the names of what is written end."""
 
-Sample = tuple[float, NDArray[np.float64]]
+Sample = tuple[float, NDArray[np.float64], float]
 
 TRAJECTORY_INTERVAL = 0.01
 """Time between two rows of an exported trajectory [s]."""
@@ -31,7 +31,7 @@ class Capture:
     """Records an episode where a file was asked for, and writes the files afterwards.
 
     Raises:
-        MalformedFile: at once, where one of the files cannot be written.
+        MalformedFile: at once, where the name of a film or of stills ends in what cannot be written.
     """
 
     def __init__(
@@ -43,7 +43,6 @@ class Capture:
         trajectory: Path | None = None,
     ) -> None:
         self.replay, self.video, self.stills, self.trajectory = replay, video, stills, trajectory
-        require_writable(replay, video, stills, trajectory)
         _require_suffix(video, "a film", FILMS)
         _require_suffix(stills, "stills", PICTURES)
         self.recording = Recording()
@@ -59,20 +58,23 @@ class Capture:
         return self.recording.take if self.replay or self.video or self.stills else None
 
     def finish(self, executor: Executor, episode: Episode) -> None:
-        """Write what was asked for."""
+        """Write what was asked for, each file whole or not at all."""
         tabletop = executor.tabletop
         if self.trajectory is not None:
-            write_trajectory(self.trajectory, _thinned(executor.world.recorded))
+            with replacing(self.trajectory) as path:
+                write_trajectory(path, _thinned(executor.world.recorded))
         if self.replay is not None:
             from smash.execution.replay import write_replay
 
             write_replay(self.replay, self.recording, tabletop, episode, list(executor.instance.blocks))
         if self.stills is not None:
-            self._write_stills(self.stills, tabletop, episode)
+            with replacing(self.stills) as path:
+                self._write_stills(path, tabletop, episode)
         if self.video is not None:
             from smash.execution.pictures import write_film
 
-            write_film(self.video, self.recording, tabletop)
+            with replacing(self.video) as path:
+                write_film(path, self.recording, tabletop)
 
     def _write_stills(self, path: Path, tabletop: Tabletop, episode: Episode) -> None:
         from smash.execution.pictures import write_stills
@@ -91,9 +93,10 @@ class Capture:
 def _thinned(samples: Iterable[Sample]) -> Iterator[Sample]:
     """Leave out samples that follow another one too closely."""
     due = float("-inf")
-    for moment, position in samples:
+    for sample in samples:
+        moment = sample[0]
         if moment >= due:
-            yield moment, position
+            yield sample
             due = moment + TRAJECTORY_INTERVAL - 1e-6
 
 

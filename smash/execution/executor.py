@@ -19,7 +19,7 @@ from smash.execution.errors import ExecutionFailure, Fell, NotAtGoal
 from smash.execution.grounding import Grounder, Task
 from smash.execution.performing import Performer
 from smash.execution.policy import Policy
-from smash.execution.readback import NOWHERE
+from smash.execution.readback import NOWHERE, fallen_off
 from smash.execution.recovery import Recovery
 from smash.execution.robot import READY
 from smash.execution.start import starting_carriers, starting_poses
@@ -164,7 +164,7 @@ class Executor:
         begun = row.begun = self.world.time
         try:
             self.performer.perform(task, row, expected)
-            observed = self.performer.observe()
+            observed = self._all_on_table()
             self.law.apply(expected, task.action)
             observed.origin = expected.origin
             if rest is not None and observed.key() != expected.key() and not self._still_good(observed, rest):
@@ -179,6 +179,17 @@ class Executor:
             raise Fell(str(problem)) from None
         finally:
             row.times.execution = self.world.time - begun
+
+    def _all_on_table(self) -> State:
+        """The law's state as observed.
+
+        Raises:
+            Fell: where a block is not on the table any more.
+        """
+        lost = fallen_off(self.world.poses())
+        if lost:
+            raise Fell(f"block {lost[0]!r} fell off the table")
+        return self.performer.observe()
 
     def _recover(self, action: Action) -> None:
         self._perform(Task(action, None), "recovery", self.performer.observe(), None)
@@ -197,7 +208,10 @@ class Executor:
         """Whether the settled blocks fulfil the goal, and still do after a wait."""
         self.world.settle()
         for _ in range(2):
-            shortfall = self.law.goal_shortfall(self.performer.observe())
+            try:
+                shortfall = self.law.goal_shortfall(self._all_on_table())
+            except Fell as failure:
+                return failure
             if shortfall is not None:
                 return NotAtGoal(shortfall)
             self.world.wait(JUDGE_WAIT)
@@ -213,7 +227,8 @@ class Executor:
         if last is not None and last.outcome in ("no motion", "slip", "IK", "out of reach"):
             self.recovery.clear(action_from_list(list(last.action), "episode"))
         state = self.performer.observe()
-        if self.performer.hand is not None or NOWHERE in state.stations.values():
+        lost = fallen_off(self.world.poses())
+        if lost or self.performer.hand is not None or NOWHERE in state.stations.values():
             return None
         remaining = observed_instance(self.instance, state)
         begun = perf_counter()

@@ -61,6 +61,11 @@ def read_state(where: Geometry, tabletop: Tabletop, hand: str | None = None) -> 
     return State(piles, set(loose), hand, carried, stations)
 
 
+def fallen_off(blocks: Mapping[str, BlockPose]) -> list[str]:
+    """The blocks that are no longer on the table: no part of the law's state."""
+    return [name for name, pose in blocks.items() if pose.position[2] < 0.0]
+
+
 def _station(pose: BlockPose, stations: Mapping[str, Slot], tabletop: Tabletop) -> str:
     """The station that a tray stands at, flat on the table and along it."""
     if pose.tilt > LARGEST_TILT or abs(pose.position[2]) > tabletop.side / 2:

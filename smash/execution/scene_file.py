@@ -97,6 +97,8 @@ def scene_from_document(document: Any, where: str = "scene") -> Tabletop:
     """
     check_format(document, where, SCENE_FORMAT)
     if document.get("base") == "default":
+        if "name" not in document:
+            raise MalformedFile(where, "missing `name`: a scene with a base has one of its own")
         document = {**_parse(read_bytes(DEFAULT_SCENE), str(DEFAULT_SCENE)), **document}
     file = cast(_SceneFile, convert(document, _SceneFile, where))
     if not file.stacks:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from hashlib import sha256
 from math import cos, hypot, pi, sin
 
 from smash.execution.block_pose import QUARTER, BlockPose
@@ -121,6 +122,11 @@ class Tabletop:
         return self.stacks + self.buffers
 
     @property
+    def fingerprint(self) -> str:
+        """Eight characters that tell this scene from others, whatever they are called."""
+        return sha256(repr(self).encode()).hexdigest()[:8]
+
+    @property
     def highest(self) -> int:
         """The most blocks of a pile that the arm can work on from above."""
         return int(HIGHEST * 0.045 / self.side)
@@ -136,7 +142,7 @@ class Tabletop:
         for what, wanted, room in (
             ("stacks", len(instance.stacks), len(self.stacks)),
             ("buffers", len(instance.buffers), len(self.buffers)),
-            ("blocks", len(instance.blocks), self.highest),
+            ("blocks, which a plan may pile up", len(instance.blocks), self.highest),
             ("stations", len(stations_of(instance)), len(self.stations)),
             ("places on a carrier", max((c.capacity for c in instance.carriers), default=0), cells),
         ):

@@ -36,7 +36,7 @@ TRIAL_FORMAT = "smash-topple-trial/1"
 
 
 Key = tuple[str, int, int, int, int]
-"""What tells a trial from the others: scene, stack, height of the cut, number falling, seed."""
+"""What tells a trial from the others: the scene's fingerprint, stack, height of the cut, number falling, seed."""
 
 
 class Landing(msgspec.Struct, frozen=True):
@@ -52,6 +52,7 @@ class Trial(msgspec.Struct, frozen=True, kw_only=True):
     """One topple.
 
     Attributes:
+        layout: The scene's fingerprint.
         stack: Index of the scene's stack.
         height: Lowest level that falls, 1 is the bottom.
         falling: Number of blocks that fall.
@@ -64,6 +65,7 @@ class Trial(msgspec.Struct, frozen=True, kw_only=True):
 
     format: str = TRIAL_FORMAT
     scene: str
+    layout: str = ""
     stack: int
     height: int
     falling: int
@@ -76,7 +78,7 @@ class Trial(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def key(self) -> Key:
         """What tells a trial from the others."""
-        return self.scene, self.stack, self.height, self.falling, self.seed
+        return self.layout, self.stack, self.height, self.falling, self.seed
 
     @property
     def success(self) -> bool:
@@ -95,7 +97,9 @@ def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: i
     poses = starting_poses(instance, slots, tabletop, np.random.default_rng(seed))
     steps = Steps(tabletop, seed)
     action = Topple(location, height)
-    blank = Trial(scene=tabletop.name, stack=stack, height=height, falling=falling, seed=seed)
+    blank = Trial(
+        scene=tabletop.name, layout=tabletop.fingerprint, stack=stack, height=height, falling=falling, seed=seed
+    )
     with World(tabletop, poses, READY) as world:
         world.settle()
         before = world.poses()

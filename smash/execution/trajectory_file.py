@@ -1,6 +1,8 @@
 """The joint trajectory of an episode as a CSV file: `smash execute --trajectory FILE`.
 
-One row per sample: `time` [s] from the beginning of the episode, the seven arm joints [rad] by the names of the URDF.
+One row per sample: `time` [s] from the beginning of the episode, the seven arm joints [rad] by the names of the URDF,
+`finger_opening` [m], how far each finger is sent from the middle. Rows follow one another at even steps, also while the
+arm stands still.
 Numbers are written in full, so that a file read back holds the same values bit for bit.
 """
 
@@ -17,28 +19,30 @@ from numpy.typing import NDArray
 from smash.execution.robot import ARM_JOINTS
 from smash.problem.errors import MalformedFile
 
-HEADER = ("time", *ARM_JOINTS)
+HEADER = ("time", *ARM_JOINTS, "finger_opening")
 
 
-def write_trajectory(path: str | os.PathLike[str], samples: Iterable[tuple[float, NDArray[np.float64]]]) -> None:
+def write_trajectory(path: str | os.PathLike[str], samples: Iterable[tuple[float, NDArray[np.float64], float]]) -> None:
     """Write commanded joint positions with their times.
 
     Args:
         path: The file; it is overwritten.
-        samples: Time [s] and joints [rad], shape (7,), in the order of time.
+        samples: Time [s], joints [rad], shape (7,), and opening [m], in the order of time.
     """
     with Path(path).open("w", newline="", encoding="ascii") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(HEADER)
-        for time, joints in samples:
-            writer.writerow([repr(float(value)) for value in (time, *joints)])
+        for time, joints, opening in samples:
+            writer.writerow([repr(float(value)) for value in (time, *joints, opening)])
 
 
-def read_trajectory(path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Times [s], shape (N,), and joints [rad], shape (N, 7), of a file that `write_trajectory` wrote.
+def read_trajectory(
+    path: str | os.PathLike[str],
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Times [s], shape (N,), joints [rad], shape (N, 7), and openings [m], shape (N,), of a file written here.
 
     Raises:
-        MalformedFile: The header is another, or a row is not eight numbers.
+        MalformedFile: The header is another, or a row is not nine numbers.
     """
     lines = Path(path).read_text(encoding="utf-8").splitlines()
     if not lines or tuple(lines[0].split(",")) != HEADER:
@@ -50,4 +54,4 @@ def read_trajectory(path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], 
         except ValueError:
             problem = f"line {number + 2}: {len(HEADER)} numbers separated by commas are allowed"
             raise MalformedFile(os.fspath(path), problem) from None
-    return rows[:, 0], rows[:, 1:]
+    return rows[:, 0], rows[:, 1:-1], rows[:, -1]

@@ -21,6 +21,7 @@ from smash.execution.block_pose import BlockPose
 from smash.execution.simulated_robot import simulated_panda
 from smash.execution.tabletop import Tabletop
 from smash.execution.timing import Trajectory
+from smash.execution.window import furnish, require_display, words_to_stderr
 
 STEP = 1 / 480
 """Physics time step [s]: at 1/240 tall stacks drift by millimetres."""
@@ -64,10 +65,17 @@ class World:
         self._on_frame = on_frame
         self._frame_interval = frame_interval
         self._next_frame = 0.0
-        self._target = np.array(ready, dtype=np.float64)
-        self.recorded: list[tuple[float, NDArray[np.float64]]] = []
+        self._target = self._sent = np.array(ready, dtype=np.float64)
+        self.recorded: list[tuple[float, NDArray[np.float64], float]] = []
+        """What arm [rad], shape (7,), and fingers [m from the middle] were sent to, with the time [s] of each step."""
+        self._after_close: Callable[[], None] | None = None
+        if gui:
+            require_display()
         self.client: Any = connect(gui)
         try:
+            if gui:
+                self._after_close = words_to_stderr()
+                furnish(self.client, tabletop)
             self._set_up(blocks)
             self.trays = {name: self._add_tray(pose) for name, pose in (carriers or {}).items()}
         except BaseException:
@@ -87,6 +95,9 @@ class World:
         if self.client is not None:
             self.client.disconnect()
             self.client = None
+        if self._after_close is not None:
+            self._after_close()
+            self._after_close = None
 
     def _set_up(self, blocks: Mapping[str, BlockPose]) -> None:
         c, friction, side = self.client, self.tabletop.friction, self.tabletop.side
@@ -165,6 +176,7 @@ class World:
     def _step(self) -> None:
         self._step_simulation()
         self.time += STEP
+        self.recorded.append((self.time, self._sent, self.opening))
         if self._on_frame is not None and self.time >= self._next_frame:
             self._next_frame += self._frame_interval
             self._on_frame(self)
@@ -178,8 +190,8 @@ class World:
         velocities = np.diff(positions, axis=0, prepend=trajectory.positions[:1]) / STEP
         for row, position, velocity in zip(positions, positions.tolist(), velocities.tolist(), strict=True):
             self._send_arm(targetPositions=position, targetVelocities=velocity)
+            self._sent = row
             self._step()
-            self.recorded.append((self.time, row))
         self._target = trajectory.positions[-1].copy()
         self._hold()
 

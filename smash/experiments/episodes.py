@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from functools import cache
 from pathlib import Path
 from threading import Event
 from time import perf_counter
@@ -19,6 +20,7 @@ from typing import Any
 from smash.experiments.environment import commit, load, machine, versions
 from smash.experiments.episode_worker import Crew, EpisodeLost
 from smash.experiments.records import RUNS, Records, read_records
+from smash.problem.errors import SmashError
 from smash.problem.instance_file import instance_from_document
 from smash.problem.model import Instance, PositionsGoal
 
@@ -43,9 +45,16 @@ class EpisodeRun:
 
     @property
     def key(self) -> str:
-        """Names the episode for good."""
-        scene = "" if self.scene is None else f"/{Path(self.scene).stem}"
+        """Names the episode for good: a scene file by its name and by what it says."""
+        scene = "" if self.scene is None else f"/{Path(self.scene).stem}-{_fingerprint(self.scene)}"
         return f"{self.record['key']}/{self.policy}/{self.seed}{scene}"
+
+
+@cache
+def _fingerprint(scene: str) -> str:
+    from smash.execution.scene_file import read_scene
+
+    return read_scene(scene).fingerprint
 
 
 def episode_runs(
@@ -68,9 +77,14 @@ def episode_runs(
 
     Raises:
         MalformedFile: where the records are damaged.
+        SmashError: where nobody is labelled so.
     """
     plans = [record for record in read_records(results / RUNS) if record["actions"] is not None]
     plans = [record for record in plans if record["outcome"] != "refused" and record["kind"] != "cutoff"]
+    known = {record["label"] for record in plans}
+    for label in labels:
+        if label not in known:
+            raise SmashError(f"{results / RUNS}: no plan by {label!r}; there are plans by {', '.join(sorted(known))}")
     plans = [record for record in plans if not labels or record["label"] in labels]
     runs = [EpisodeRun(record, seed, policy, scene) for seed in seeds for record in plans for policy in policies]
     return [replace(run, replay=_replay(results, run)) if replays and run.seed == seeds[0] else run for run in runs]

@@ -16,13 +16,13 @@ from smash.execution.tabletop import Tabletop
 from smash.execution.topple_map import Key, Trial, run_trial
 from smash.experiments.json_lines import set_damaged_aside
 from smash.experiments.lifetime import end_with_parent
-from smash.problem.errors import SmashError
+from smash.problem.errors import MalformedFile, SmashError
 
 
 def wanted_trials(tabletop: Tabletop, highest_cut: int, most: int, seeds: int) -> list[Key]:
     """Return every trial that the scene allows: seeds first, so that a part is a fair sample; stacks in turn."""
     return [
-        (tabletop.name, seed % len(tabletop.stacks), height, falling, seed)
+        (tabletop.fingerprint, seed % len(tabletop.stacks), height, falling, seed)
         for seed in range(seeds)
         for height in range(1, highest_cut + 1)
         for falling in range(1, most + 1)
@@ -31,10 +31,18 @@ def wanted_trials(tabletop: Tabletop, highest_cut: int, most: int, seeds: int) -
 
 
 def read_trials(path: Path) -> tuple[dict[Key, Trial], bool]:
-    """Return the trials of a file, and whether a damaged last line was set aside."""
+    """Return the trials of a file, and whether a damaged last line was set aside.
+
+    Raises:
+        MalformedFile: where another line is damaged.
+    """
     damaged = set_damaged_aside(path, _is_trial)
     lines = path.read_bytes().splitlines() if path.exists() else []
-    return {trial.key: trial for trial in (msgspec.json.decode(line, type=Trial) for line in lines)}, damaged
+    try:
+        found = [msgspec.json.decode(line, type=Trial) for line in lines]
+    except msgspec.MsgspecError as error:
+        raise MalformedFile(str(path), f"holds a line that is no trial: {error}") from None
+    return {trial.key: trial for trial in found}, damaged
 
 
 def run_trials(

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+import re
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, get_args, get_origin
 
 import msgspec
 
@@ -50,6 +53,8 @@ def parse_toml(content: bytes, where: str) -> dict[str, Any]:
         return tomllib.loads(content.decode())
     except UnicodeDecodeError:
         raise MalformedFile(where, "not UTF-8 text") from None
+    except RecursionError:
+        raise MalformedFile(where, "TOML nested too deeply") from None
     except tomllib.TOMLDecodeError as error:
         raise MalformedFile(where, f"not TOML: {error}") from None
 
@@ -75,13 +80,8 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
     """
     target = Path(path)
     if not target.exists() or target.is_file():
-        temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
-        try:
+        with replacing(target) as temporary:
             temporary.write_text(text, encoding="utf-8")
-            temporary.replace(target)
-        except OSError as error:
-            temporary.unlink(missing_ok=True)
-            raise MalformedFile(os.fspath(path), f"cannot be written: {error.strerror}") from None
         return
     try:  # /dev/stdout, a pipe: nothing to rename
         target.write_text(text, encoding="utf-8")
@@ -90,14 +90,39 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
 
 
 def require_writable(*paths: Path | None) -> None:
-    """Refuse files whose directories are missing or closed before long work begins; None stands for no file.
+    """Refuse files that could not be written before long work begins; None stands for no file.
 
     Raises:
-        MalformedFile: about the first that cannot be written.
+        MalformedFile: about the first that is a directory, is asked for twice, or whose directory is missing or closed.
     """
-    for path in paths:
-        if path is not None and not os.access(path.parent, os.W_OK):
-            raise MalformedFile(str(path), "cannot be written: its directory is missing or closed")
+    asked = [path for path in paths if path is not None]
+    for number, path in enumerate(asked):
+        if path.is_dir():
+            raise MalformedFile(str(path), "cannot be written: it is a directory")
+        if path in asked[:number]:
+            raise MalformedFile(str(path), "cannot be written: it is asked for twice")
+        if not path.exists() or path.is_file():
+            try:
+                tempfile.TemporaryFile(dir=path.parent).close()
+            except OSError:
+                raise MalformedFile(str(path), "cannot be written: its directory is missing or closed") from None
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """A name beside `path`, with its ending, for what shall be there whole or not at all.
+
+    Raises:
+        MalformedFile: where it cannot be written.
+    """
+    temporary = path.with_name(f".{os.getpid()}.part.{path.name}")
+    try:
+        yield temporary
+        temporary.replace(path)
+    except OSError as error:
+        raise MalformedFile(os.fspath(path), f"cannot be written: {error.strerror or error}") from None
+    finally:
+        temporary.unlink(missing_ok=True)
 
 
 def convert(document: Any, kind: Any, where: str) -> Any:
@@ -111,9 +136,33 @@ def convert(document: Any, kind: Any, where: str) -> Any:
     except msgspec.ValidationError as error:
         message = str(error).replace("`$.", "`").removeprefix("Object contains ")
         message = message.replace("Object missing", "missing")
-        if message.startswith("unknown field") and " - at " not in message:
-            message += f"; allowed: {', '.join(field.name for field in msgspec.structs.fields(kind))}"
-        raise MalformedFile(where, message) from None
+        allowed = _allowed(message, kind)
+        raise MalformedFile(where, message + (f"; allowed: {', '.join(allowed)}" if allowed else "")) from None
+
+
+def _allowed(message: str, kind: Any) -> list[str]:
+    """Return the keys, or the words, that are allowed where msgspec found another one; none where it says so itself."""
+    path = re.findall(r"\w+", message.split(" - at ")[1]) if " - at " in message else []
+    for name in path:
+        if not name.isdigit():
+            kind = next((f.type for f in _fields(kind) if f.encode_name == name), None)
+    if message.startswith("unknown field"):
+        return [field.encode_name for field in _fields(kind)]
+    return [str(word) for word in _words(kind)] if message.startswith("Invalid enum value") else []
+
+
+def _fields(kind: Any) -> tuple[msgspec.structs.FieldInfo, ...]:
+    """Return the fields of the one struct that a type is made of."""
+    if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
+        return msgspec.structs.fields(kind)
+    return next((found for part in get_args(kind) if (found := _fields(part))), ())
+
+
+def _words(kind: Any) -> tuple[Any, ...]:
+    """Return the values of the one `Literal` that a type is made of."""
+    if get_origin(kind) is Literal:
+        return get_args(kind)
+    return next((found for part in get_args(kind) if (found := _words(part))), ())
 
 
 def check_format(document: Any, where: str, *wanted: str) -> None:

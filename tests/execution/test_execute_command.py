@@ -1,6 +1,9 @@
+import itertools
 import json
+import os
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -33,7 +36,8 @@ def test_the_command_prints_the_episode_and_leaves_its_files(filed):
     rows = (filed / "t.csv").read_text().splitlines()
     times = [float(row.split(",")[0]) for row in rows[1:]]
     assert times == sorted(times)
-    assert len(rows[1].split(",")) == 8
+    assert len(rows[1].split(",")) == 9
+    assert max(later - earlier for earlier, later in itertools.pairwise(times)) < 0.015
 
 
 def test_a_failed_execution_exits_5_with_action_and_reason(filed):
@@ -55,6 +59,13 @@ def test_a_failed_execution_exits_5_with_action_and_reason(filed):
         (["--video", "film.txt"], 2),
         (["--replay", "nowhere/r.html"], 2),
         (["--stills", "still.txt"], 2),
+        (["--seed", "18446744073709551616"], 2),
+        (["--budget", "nan"], 2),
+        (["--replay", "plan.json/r.html"], 2),
+        (["--replay", "same.html", "--out", "same.html"], 2),
+        (["--replay", ""], 2),
+        (["--replanner", "martian"], 2),
+        (["--replanner", "greedy", "--no-replan"], 2),
         (["--out", "nowhere/episode.json"], 2),
     ],
 )
@@ -70,3 +81,27 @@ def test_a_plan_that_the_law_refuses_is_not_executed(filed):
     assert ended.returncode == 3
     assert ended.stdout == ""
     assert ended.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("display", [None, ":77", "nonsense"])
+def test_without_a_display_there_is_no_window_and_one_line_says_so(filed, display):
+    environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+    environment |= {} if display is None else {"DISPLAY": display}
+    command = [sys.executable, "-m", "smash", "execute", "instance.json", "plan.json", "--gui"]
+    ended = subprocess.run(command, capture_output=True, text=True, cwd=filed, timeout=100, env=environment)
+    assert ended.returncode == 6
+    assert ended.stderr.count("\n") == 1
+    assert "no window can be opened" in ended.stderr
+
+
+@pytest.mark.slow
+def test_a_polite_kill_ends_an_execution_as_ctrl_c_does_and_leaves_nothing(filed):
+    command = [sys.executable, "-m", "smash", "execute", "instance.json", "plan.json", "--video", "film.mp4"]
+    environment = os.environ | {"TMPDIR": str(filed)}
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, cwd=filed, env=environment) as running:
+        time.sleep(6)
+        running.terminate()
+        words = running.communicate(timeout=30)[1]
+    assert running.returncode == 130
+    assert "smash: interrupted" in words.splitlines()
+    assert sorted(path.name for path in filed.iterdir()) == ["instance.json", "plan.json"]

@@ -109,6 +109,14 @@ def test_an_episode_is_written_as_json():
     assert document["success"] is False
 
 
+def test_a_block_that_falls_off_the_table_is_a_failure_whatever_the_goal_asks():
+    ice = dataclasses.replace(default_scene(), friction=Friction(0.45, 0.01, 1.0))
+    episode = run(buried_target(), buried_plan(), scene=ice, replanner=lambda instance, options: None)
+    assert not episode.success
+    assert episode.failure.name == "fell"
+    assert "off the table" in episode.failure.reason
+
+
 def test_an_illegal_new_plan_leaves_the_failure_as_it_was():
     def replan(instance, options):
         return [Pick("a", "s1"), Place("a", "s1")]

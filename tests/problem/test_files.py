@@ -2,11 +2,14 @@
 
 import copy
 import json
+from typing import Literal
 
+import msgspec
 import pytest
 from hypothesis import given, settings
 
 from smash.problem import MalformedFile, read_instance, write_instance
+from smash.problem.documents import convert, replacing
 from smash.problem.instance_file import instance_document, instance_from_document
 from smash.problem.plan_file import plan_document, plan_from_document
 from smash.problem.suites import SUITES, generated_names, made_again, read_suite
@@ -138,3 +141,46 @@ def test_the_committed_sets_are_made_again_byte_for_byte(suite, tmp_path):
         write_instance(instance, tmp_path / "again.json")
         assert (tmp_path / "again.json").read_bytes() == (SUITES / suite / f"{instance.name}.json").read_bytes()
     assert [i.name for i in read_suite(suite)] == [i.name for i in made]
+
+
+@pytest.mark.parametrize(
+    ("document", "words"),
+    [
+        ({"inner": {"wrong": 1}}, "unknown field `wrong` - at `inner`; allowed: word"),
+        ({"inner": {"word": "c"}}, "Invalid enum value 'c' - at `inner.word`; allowed: a, b"),
+        ({"many": [{"word": "c"}]}, "Invalid enum value 'c' - at `many[0].word`; allowed: a, b"),
+        ({"other": 1}, "unknown field `other`; allowed: inner, many"),
+    ],
+)
+def test_a_refusal_says_what_is_allowed_where_it_is_wrong(document, words):
+    with pytest.raises(MalformedFile) as refusal:
+        convert(document, _Outer, "file")
+    assert str(refusal.value) == f"file: {words}"
+
+
+class _Inner(msgspec.Struct, forbid_unknown_fields=True):
+    word: Literal["a", "b"] = "a"
+
+
+class _Outer(msgspec.Struct, forbid_unknown_fields=True):
+    inner: _Inner | None = None
+    many: list[_Inner] = []
+
+
+def test_what_is_replaced_is_whole_or_as_it_was(tmp_path):
+    path = tmp_path / "film.mp4"
+    path.write_text("old")
+
+    def interrupted():
+        with replacing(path) as temporary:
+            temporary.write_text("half")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert path.read_text() == "old"
+    with replacing(path) as temporary:
+        assert temporary.suffix == ".mp4"
+        temporary.write_text("new")
+    assert [entry.name for entry in tmp_path.iterdir()] == ["film.mp4"]
+    assert path.read_text() == "new"
