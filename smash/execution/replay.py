@@ -5,6 +5,8 @@ from __future__ import annotations
 import base64
 import html
 import json
+import re
+from collections.abc import Mapping
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -54,9 +56,13 @@ def write_replay(path: Path, recording: Recording, tabletop: Tabletop, episode: 
         "result": "success" if episode.failure is None else f"{episode.failure.name}: {episode.failure.reason}",
     }
     title = html.escape(f"{episode.instance} · {episode.planner} · seed {episode.seed}")
-    data = json.dumps(scene).replace("</", "<\\/")
-    page = TEMPLATE.read_text(encoding="utf-8").replace("{{title}}", title).replace("{{data}}", data)
-    write_text(path, page)
+    data = json.dumps(scene).replace("<", "\\u003c")
+    write_text(path, _filled(TEMPLATE.read_text(encoding="utf-8"), {"title": title, "data": data}))
+
+
+def _filled(template: str, values: Mapping[str, str]) -> str:
+    """The template with each `{{key}}` replaced, in one pass: what is put in is not looked at again."""
+    return re.sub(r"\{\{(\w+)\}\}", lambda found: values[found[1]], template)
 
 
 def _packed(values: NDArray[np.float64]) -> str:
