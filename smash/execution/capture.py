@@ -66,7 +66,7 @@ class Capture:
         if self.replay is not None:
             from smash.execution.replay import write_replay
 
-            write_replay(self.replay, self.recording, tabletop, episode, list(executor.instance.blocks))
+            write_replay(self.replay, self.recording, tabletop, episode, executor.instance)
         if self.stills is not None:
             self._write_stills(self.stills, tabletop, episode)
         if self.video is not None:
