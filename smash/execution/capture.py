@@ -72,7 +72,7 @@ class Capture:
         if self.video is not None:
             from smash.execution.pictures import write_film
 
-            write_film(self.video, self.recording, tabletop)
+            write_film(self.video, self.recording, tabletop, episode)
 
     def _write_stills(self, path: Path, tabletop: Tabletop, episode: Episode) -> None:
         from smash.execution.pictures import write_stills
