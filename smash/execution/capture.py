@@ -66,7 +66,7 @@ class Capture:
         if self.replay is not None:
             from smash.execution.replay import write_replay
 
-            write_replay(self.replay, self.recording, tabletop, episode, list(executor.instance.blocks))
+            write_replay(self.replay, self.recording, tabletop, episode, executor.instance)
         if self.stills is not None:
             with replacing(self.stills) as path:
                 self._write_stills(path, tabletop, episode)
@@ -74,7 +74,7 @@ class Capture:
             from smash.execution.pictures import write_film
 
             with replacing(self.video) as path:
-                write_film(path, self.recording, tabletop)
+                write_film(path, self.recording, tabletop, episode)
 
     def _write_stills(self, path: Path, tabletop: Tabletop, episode: Episode) -> None:
         from smash.execution.pictures import write_stills

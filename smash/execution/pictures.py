@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import colorsys
 from collections.abc import Iterator, Sequence
+from functools import cache
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -11,15 +12,20 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from smash.execution.episode import Episode
 from smash.execution.recording import Recording
 from smash.execution.tabletop import Tabletop
 from smash.execution.world import ARM, FINGERS, connect
 
 SIZE = (960, 640)
 """Width and height of a picture [pixels]."""
-FILM_SIZE = (640, 426)
+FILM_SIZE = (640, 432)
+"""Of a film with its caption: multiples of 16, as its codec wants."""
+CAPTION_HEIGHT = 28
 SPEED_UP = 4
 """A film runs this much faster than simulated time."""
+FRAME_TIME = 40
+"""Of a film [ms]: whole hundredths of a second, as a GIF stores it."""
 TRAY_COLOUR = (0.62, 0.47, 0.30)
 
 Image = NDArray[np.uint8]
@@ -123,24 +129,75 @@ def write_stills(path: Path, recording: Recording, tabletop: Tabletop, moments: 
     figure.savefig(path, dpi=150)
 
 
-def write_film(path: Path, recording: Recording, tabletop: Tabletop) -> None:
-    """Write an episode as a film, .mp4 or .gif, several times faster than it was."""
+def write_film(path: Path, recording: Recording, tabletop: Tabletop, episode: Episode) -> None:
+    """Write an episode as a film, .mp4 or .gif, several times faster than it was; captions say when and what."""
     import imageio.v2 as imageio
 
-    count, length = len(recording.times), recording.times[-1] - recording.times[0]
-    rate = SPEED_UP * (count - 1) / length if length > 0 else 25.0
-    every = max(1, round(rate / 25.0))
-    options: dict[str, Any] = {"fps": rate / every}
+    options: dict[str, Any] = {"fps": 1000 / FRAME_TIME, "ffmpeg_log_level": "quiet"}
     if path.suffix == ".gif":
-        options = {"duration": 1000 * every / rate, "loop": 0}
+        options = {"duration": FRAME_TIME, "loop": 0}
     writer: Any = imageio.get_writer(path, **options)
     with writer:
-        for image in _images(recording, tabletop, every):
+        for image in _images(recording, tabletop, episode):
             writer.append_data(image)
 
 
-def _images(recording: Recording, tabletop: Tabletop, every: int) -> Iterator[Image]:
+def film_frames(times: Sequence[float]) -> list[int]:
+    """The frames of a recording that are nearest to the moments of a film, which are evenly apart."""
+    taken = np.asarray(times)
+    moments = np.arange(taken[0], taken[-1] + 1e-6, SPEED_UP * FRAME_TIME / 1000)
+    return [int(frame) for frame in np.searchsorted((taken[1:] + taken[:-1]) / 2, moments)]
+
+
+def _images(recording: Recording, tabletop: Tabletop, episode: Episode) -> Iterator[Image]:
+    width, height = FILM_SIZE
     with Stage(tabletop, len(recording.blocks[0]), len(recording.trays[0])) as stage:
-        for frame in range(0, len(recording.times), every):
+        for frame in film_frames(recording.times):
             stage.pose(recording, frame)
-            yield stage.photograph(FILM_SIZE)
+            moment = recording.times[frame]
+            strip = _caption(action_at(episode, moment), f"{moment:.1f} s   {SPEED_UP}x")
+            yield np.concatenate([stage.photograph((width, height - CAPTION_HEIGHT)), strip])
+
+
+def action_at(episode: Episode, moment: float) -> str:
+    """What the robot is doing at a simulated time [s], in words."""
+    begun = [row for row in episode.actions if row.begun <= moment + 1e-6]
+    if not begun:
+        return ""
+    row = begun[-1]
+    failed = "" if row.outcome == "done" else f": {row.outcome}"
+    return f"{row.step}. {' '.join(map(str, row.action))}{failed}"
+
+
+def _caption(left: str, right: str) -> Image:
+    """A strip of a film's width with words at both ends; those on the left are cut where they are too many."""
+    from PIL import Image as Pillow
+    from PIL import ImageDraw
+
+    strip = Pillow.new("RGB", (FILM_SIZE[0], CAPTION_HEIGHT), (244, 243, 240))
+    pen, font = ImageDraw.Draw(strip), _font()
+    edge, middle = 10, CAPTION_HEIGHT // 2
+    left = _cut(" ".join(left.split()), font, FILM_SIZE[0] - 4 * edge - font.getlength(right))
+    pen.text((edge, middle), left, (35, 38, 43), font, anchor="lm")
+    pen.text((FILM_SIZE[0] - edge, middle), right, (95, 100, 108), font, anchor="rm")
+    return np.asarray(strip)
+
+
+def _cut(text: str, font: Any, room: float) -> str:
+    """The text, or as much of its beginning as has room [pixels], and an ellipsis."""
+    if font.getlength(text) <= room:
+        return text
+    lengths = (length for length in range(len(text)) if font.getlength(text[:length] + "…") > room)
+    return text[: max(0, next(lengths, len(text)) - 1)] + "…"
+
+
+@cache
+def _font() -> Any:
+    """Matplotlib's font, which knows many scripts; without matplotlib Pillow's own, which knows few letters."""
+    from PIL import ImageFont
+
+    try:
+        from matplotlib import get_data_path
+    except ImportError:
+        return ImageFont.load_default(15)
+    return ImageFont.truetype(f"{get_data_path()}/fonts/ttf/DejaVuSans.ttf", 14)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import base64
 import html
 import json
+import re
+from collections.abc import Mapping
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -19,13 +21,18 @@ from smash.execution.recording import Recording
 from smash.execution.robot import panda_urdf
 from smash.execution.tabletop import Tabletop
 from smash.problem.documents import write_text
+from smash.problem.model import Goal, Instance, OnGoal, PositionsGoal, StacksGoal
 
 TEMPLATE = Path(__file__).parent / "replay.html"
 MESHES = ("link0", *(f"link{number}" for number in range(1, 8)), "hand", "finger", "finger")
 """Mesh of each drawn part: base, the arm's links, hand, left and right finger."""
 
 
-def write_replay(path: Path, recording: Recording, tabletop: Tabletop, episode: Episode, blocks: list[str]) -> None:
+BESIDE = 0.03
+"""The name of a location stands on the table, this far beyond what marks its place [m]."""
+
+
+def write_replay(path: Path, recording: Recording, tabletop: Tabletop, episode: Episode, instance: Instance) -> None:
     """Write the page.
 
     Args:
@@ -33,13 +40,14 @@ def write_replay(path: Path, recording: Recording, tabletop: Tabletop, episode: 
         recording: The frames.
         tabletop: The scene.
         episode: What was done, for captions.
-        blocks: Names of the blocks, in the recording's order.
+        instance: What was to be done: the names of blocks, in the recording's order, and of locations, and the goal.
     """
     scene: dict[str, Any] = {
         "side": tabletop.side,
         "slots": [[slot.x, slot.y, slot.angle, bool(slot.directions)] for slot in tabletop.slots],
-        "blocks": blocks,
-        "colours": block_colours(len(blocks)),
+        "places": _places(tabletop, instance),
+        "blocks": instance.blocks,
+        "colours": block_colours(len(instance.blocks)),
         "meshes": [_packed(_mesh(name)) for name in MESHES],
         "times": _packed(np.array(recording.times)),
         "links": _packed(np.array(recording.links)),
@@ -51,12 +59,40 @@ def write_replay(path: Path, recording: Recording, tabletop: Tabletop, episode: 
             {"begun": row.begun, "text": " ".join(map(str, row.action)), "origin": row.origin, "outcome": row.outcome}
             for row in episode.actions
         ],
+        "goal": goal_in_words(instance.goal),
         "result": "success" if episode.failure is None else f"{episode.failure.name}: {episode.failure.reason}",
     }
     title = html.escape(f"{episode.instance} · {episode.planner} · seed {episode.seed}")
-    data = json.dumps(scene).replace("</", "<\\/")
-    page = TEMPLATE.read_text(encoding="utf-8").replace("{{title}}", title).replace("{{data}}", data)
-    write_text(path, page)
+    data = json.dumps(scene).replace("<", "\\u003c")
+    write_text(path, _filled(TEMPLATE.read_text(encoding="utf-8"), {"title": title, "data": data}))
+
+
+def goal_in_words(goal: Goal) -> str:
+    """What a goal asks, in one line."""
+    match goal:
+        case OnGoal():
+            asked = [f"{upper} on {under}" for upper, under in goal.on.items()]
+            asked += [f"{block} at the bottom" for block in goal.bottom]
+            return "; ".join(asked) or "nothing"
+        case PositionsGoal():
+            piles, rest = goal.stacks(), "bottom first, other blocks anywhere"
+        case StacksGoal():
+            piles, rest = {name: pile for name, pile in goal.stacks.items() if pile}, "bottom first"
+    named = "; ".join(f"{location} = {' '.join(pile)}" for location, pile in piles.items())
+    return f"{named} ({rest})" if named else "nothing"
+
+
+def _places(tabletop: Tabletop, instance: Instance) -> list[tuple[str, float, float]]:
+    """Name and place on the table [m] of what to call each location and station of the instance."""
+    deep = 0.0 if tabletop.tray is None else tabletop.tray.size[1]
+    named = [(name, slot, tabletop.side) for name, slot in tabletop.bind(instance).items()]
+    named += [(name, slot, deep) for name, slot in tabletop.bind_stations(instance).items()]
+    return [(name, *slot.point(depth / 2 + BESIDE, 0.0, "outward")) for name, slot, depth in named]
+
+
+def _filled(template: str, values: Mapping[str, str]) -> str:
+    """The template with each `{{key}}` replaced, in one pass: what is put in is not looked at again."""
+    return re.sub(r"\{\{(\w+)\}\}", lambda found: values[found[1]], template)
 
 
 def _packed(values: NDArray[np.float64]) -> str:
