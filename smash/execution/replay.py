@@ -28,7 +28,7 @@ MESHES = ("link0", *(f"link{number}" for number in range(1, 8)), "hand", "finger
 """Mesh of each drawn part: base, the arm's links, hand, left and right finger."""
 
 
-BESIDE = 0.03
+BESIDE = 0.02
 """The name of a location stands on the table, this far beyond what marks its place [m]."""
 
 
