@@ -9,7 +9,7 @@ from typing import Literal, cast
 
 import msgspec
 
-from smash.experiments.episodes import EpisodeRun, episode_runs
+from smash.experiments.episodes import EpisodeRun, episode_runs, told_apart
 from smash.problem.documents import convert, read_bytes, write_text
 from smash.problem.errors import MalformedFile
 
@@ -19,7 +19,7 @@ ASKED = "episodes-asked.json"
 class Question(msgspec.Struct, frozen=True):
     """Every plan of these labels (of all where there are none), by these policies, under seeds 0 to `seeds` - 1.
 
-    `scene` is the name of a scene file, None for the built-in scene.
+    `scene` is the name of a scene file with what tells its content from others, None for the built-in scene.
     """
 
     seeds: int
@@ -40,7 +40,7 @@ def note_asked(
 ) -> None:
     """Add a question to those of a results directory; one that stands there already is not added again."""
     before = _questions(results) or []
-    name = None if scene is None else Path(scene).name
+    name = None if scene is None else told_apart(scene)
     question = Question(seeds, list(policies), name, list(labels))
     if question not in before:
         document = Asked("smash-episodes/1", [*before, question])
@@ -59,7 +59,9 @@ def asked_runs(results: Path) -> list[EpisodeRun] | None:
         return None
     runs: dict[str, EpisodeRun] = {}
     for question in questions:
-        for run in episode_runs(results, range(question.seeds), question.policies, question.scene, question.labels):
+        told = None if question.scene is None else question.scene.removesuffix(".toml").removesuffix(".json")
+        seeds, policies, labels = range(question.seeds), question.policies, question.labels
+        for run in episode_runs(results, seeds, policies, labels=labels, told=told):
             runs.setdefault(run.key, run)
     return list(runs.values())
 

@@ -6,12 +6,12 @@ that a crash of the physics costs one episode alone; a stopped run is continued 
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from functools import cache
 from pathlib import Path
 from threading import Event
 from time import perf_counter
@@ -35,26 +35,35 @@ REPLAN_BUDGET = 10.0
 
 @dataclass(frozen=True, slots=True)
 class EpisodeRun:
-    """One episode to be run: the record that holds its plan, seed, policy, scene file, the replay's file."""
+    """One episode to be run.
+
+    Attributes:
+        record: The run that holds its plan.
+        seed: Of the episode.
+        policy: Of `POLICIES`.
+        scene: The scene file, or None for the built-in scene.
+        told: What `told_apart` says of the scene, or None for the built-in scene.
+        replay: The page to write, or None.
+    """
 
     record: dict[str, Any]
     seed: int
     policy: str
     scene: str | None
+    told: str | None = None
     replay: str | None = None
 
     @property
     def key(self) -> str:
-        """Names the episode for good: a scene file by its name and by what it says."""
-        scene = "" if self.scene is None else f"/{Path(self.scene).stem}-{_fingerprint(self.scene)}"
-        return f"{self.record['key']}/{self.policy}/{self.seed}{scene}"
+        """Names the episode for good."""
+        return f"{self.record['key']}/{self.policy}/{self.seed}" + (f"/{self.told}" if self.told else "")
 
 
-@cache
-def _fingerprint(scene: str) -> str:
+def told_apart(scene: str | os.PathLike[str]) -> str:
+    """Return the name of a scene file with what tells its content from any other."""
     from smash.execution.scene_file import read_scene
 
-    return read_scene(scene).fingerprint
+    return f"{Path(scene).stem}-{read_scene(scene).fingerprint}"
 
 
 def episode_runs(
@@ -64,6 +73,7 @@ def episode_runs(
     scene: str | None = None,
     labels: Sequence[str] = (),
     replays: bool = False,
+    told: str | None = None,
 ) -> list[EpisodeRun]:
     """Return the episodes of all plans that a sweep has recorded, seed by seed, so that a part is a fair sample.
 
@@ -74,6 +84,7 @@ def episode_runs(
         scene: A scene file, or None for the built-in scene.
         labels: Only plans of planners so labelled; all where there are none.
         replays: Write a replay page of each plan's first episode beside the records.
+        told: What tells the scene from others; found out where it is not given.
 
     Raises:
         MalformedFile: where the records are damaged.
@@ -86,7 +97,9 @@ def episode_runs(
         if label not in known:
             raise SmashError(f"{results / RUNS}: no plan by {label!r}; there are plans by {', '.join(sorted(known))}")
     plans = [record for record in plans if not labels or record["label"] in labels]
-    runs = [EpisodeRun(record, seed, policy, scene) for seed in seeds for record in plans for policy in policies]
+    if told is None and scene is not None:
+        told = told_apart(scene)
+    runs = [EpisodeRun(record, seed, policy, scene, told) for seed in seeds for record in plans for policy in policies]
     return [replace(run, replay=_replay(results, run)) if replays and run.seed == seeds[0] else run for run in runs]
 
 

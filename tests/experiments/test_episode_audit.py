@@ -7,6 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 from smash.cli import smash
+from smash.execution.scene_file import read_scene
 from smash.experiments.asked import asked_runs, note_asked
 from smash.experiments.episode_audit import audit_episodes
 from tests.analysis.made_up import record as made_up_run
@@ -108,9 +109,13 @@ def test_a_half_written_last_line_is_found_and_its_episode_is_missing(findings):
 def test_questions_add_up_and_are_noted_once(findings, tmp_path):
     findings(record(0))
     note_asked(tmp_path, 2, ["open"], None, [])
-    note_asked(tmp_path, 1, ["replan"], tmp_path / "narrow.toml", ["p"])
+    scene = tmp_path / "narrow.toml"
+    scene.write_text('format = "smash-scene/1"\nname = "narrow"\nbase = "default"\n')
+    note_asked(tmp_path, 1, ["replan"], scene, ["p"])
+    told = f"narrow-{read_scene(scene).fingerprint}"
+    scene.unlink()
     assert sorted(run.key for run in asked_runs(tmp_path)) == [
-        f"{RUN['key']}/{end}" for end in ("open/0", "open/1", "replan/0/narrow")
+        f"{RUN['key']}/{end}" for end in ("open/0", "open/1", f"replan/0/{told}")
     ]
 
 

@@ -16,6 +16,7 @@ from smash.execution.episode import Episode
 from smash.experiments.episode_worker import EpisodeLost, EpisodeWorker
 from smash.experiments.episodes import EPISODES, episode_runs, target_depth
 from smash.problem import PositionsGoal, make_instance
+from smash.problem.errors import SmashError
 from tests.execution.episodes import swapped_pair
 
 
@@ -72,7 +73,8 @@ def unmeasured(episode):
 
 def test_only_plans_of_the_named_planner_are_carried_out(results):
     assert len(episode_runs(results, [0], ["open"], labels=["greedy"])) == 1
-    assert episode_runs(results, [0], ["open"], labels=["smash"]) == []
+    with pytest.raises(SmashError, match="no plan by 'smash'; there are plans by greedy"):
+        episode_runs(results, [0], ["open"], labels=["smash"])
 
 
 def test_a_dry_run_runs_nothing(results):
