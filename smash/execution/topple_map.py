@@ -174,9 +174,11 @@ def draw(trials: Sequence[Trial], path: Path) -> None:
                 axis.set_ylabel(f"cut at {height}\naside [cm]", fontsize=8)
             if row == len(heights) - 1:
                 axis.set_xlabel(f"along [cm]\n{size} falling", fontsize=8)
-    axes[0][0].set(xlim=(-12, 82), ylim=(-18, 18))
+    # The second of several pushes may go the other way.
+    nearest = min((100 * landing.along for trial in trials for landing in trial.landings), default=0.0)
+    axes[0][0].set(xlim=(min(-12.0, nearest - 5), 82), ylim=(-18, 18))
     figure.suptitle(
-        "Landings of toppled blocks (successes/trials); red: cannot be grasped from above; shaded: the strip",
+        "Landings of toppled blocks (successes/trials); red: cannot be grasped from above; shaded: first push's strip",
         fontsize=9,
     )
     figure.savefig(path, dpi=150)
