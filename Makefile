@@ -15,7 +15,7 @@ help: ## list the targets
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[analysis,pddl,execution,cluster,dev]'
-	$(BIN)/python -m smash.planners.warm
+	$(BIN)/python -m smash.planners.astar.warm
 	touch $@
 
 test: $(STAMP) ## run the tests (minutes); slow ones with `make test-slow`
@@ -30,21 +30,21 @@ lint: $(STAMP) ## ruff and mypy, both strict
 	$(BIN)/mypy
 
 suites: $(STAMP) ## make the committed instance sets again, byte for byte
-	$(BIN)/python -m smash.problem.make_suites
+	$(BIN)/python -m smash.problem.sets.make_suites
 
 ablation: $(STAMP) ## the paper's budget x buffer heatmaps on a stated subset (about 12 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/ablation.toml --out runs/ablation
-	$(BIN)/python -m analysis.ablation runs/ablation
+	$(BIN)/python -m smash_analysis.ablation runs/ablation
 
 ablation-full: $(STAMP) ## the paper's whole grid: 9 blocks, 20 instances, buffers 0 to 12, budgets to 30 s (hours)
 	$(BIN)/python -m smash sweep experiments/ablation-full.toml --out runs/ablation-full --dry-run
 	$(BIN)/python -m smash sweep experiments/ablation-full.toml --out runs/ablation-full
-	$(BIN)/python -m analysis.ablation runs/ablation-full
+	$(BIN)/python -m smash_analysis.ablation runs/ablation-full
 
 tables: $(STAMP) ## the paper's Tables I and II in simulation, a stated subset (at most 30 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/tables-subset.toml --out runs/tables-subset
 	$(BIN)/python -m smash episodes runs/tables-subset --policy replan --policy open --jobs 2
-	$(BIN)/python -m analysis.execution_tables runs/tables-subset
+	$(BIN)/python -m smash_analysis.execution_tables runs/tables-subset
 
 tables-full: $(STAMP) ## both tables whole: 20 instances a setting, up to 3 physics seeds (hours, said first; it can be resumed)
 	$(BIN)/python -m smash sweep experiments/tables-full.toml --out runs/tables-full --dry-run
@@ -52,12 +52,12 @@ tables-full: $(STAMP) ## both tables whole: 20 instances a setting, up to 3 phys
 	$(BIN)/python -m smash episodes runs/tables-full --label smash --policy replan --policy open --jobs 2
 	$(BIN)/python -m smash episodes runs/tables-full --label fd-lama --policy replan --jobs 2
 	$(BIN)/python -m smash episodes runs/tables-full --label smash --policy replan --seeds 3 --jobs 2
-	$(BIN)/python -m analysis.execution_tables runs/tables-full
+	$(BIN)/python -m smash_analysis.execution_tables runs/tables-full
 
 scoop: $(STAMP) ## the paper's scoop: pick and place alone, with topple, scoop, lift; table and 3D replays (about 10 minutes)
 	$(BIN)/python -m smash sweep experiments/scoop.toml --out runs/scoop
 	$(BIN)/python -m smash episodes runs/scoop --label smash --seeds 3 --scene examples/scoop-scene.toml --replays --jobs 2
-	$(BIN)/python -m analysis.scoop runs/scoop
+	$(BIN)/python -m smash_analysis.scoop runs/scoop
 
 friction: $(STAMP) ## the same plans under other friction, and topples by size (about 25 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/friction.toml --out runs/friction
@@ -67,18 +67,18 @@ friction: $(STAMP) ## the same plans under other friction, and topples by size (
 	  $(BIN)/python -m smash episodes runs/friction --policy replan --policy open --jobs 2 --scene experiments/scenes/$$scene.toml && \
 	  $(BIN)/python -m smash topple-map --highest-cut 3 --jobs 2 --scene experiments/scenes/$$scene.toml --out runs/friction/$$scene \
 	    || exit 1; done
-	$(BIN)/python -m analysis.execution_sweeps runs/friction $(addprefix runs/friction/,default $(SCENES))
+	$(BIN)/python -m smash_analysis.execution_sweeps runs/friction $(addprefix runs/friction/,default $(SCENES))
 
 topple-map: $(STAMP) ## where toppled blocks land, per cut height and number (minutes)
 	$(BIN)/python -m smash topple-map --jobs 2 --out runs/topple-map
 
 bench: $(STAMP) ## first plans, proofs, HiGHS against Gurobi, hundreds of blocks: the README's tables (3 minutes)
 	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt gurobipy
-	$(BIN)/python -m smash.experiments.benchmark
+	$(BIN)/python -m smash.experiments.studies.benchmark
 
 scaling: $(STAMP) ## time over 4 to 1,000 blocks, per planner: curves and exponents (hours; it can be resumed)
 	$(BIN)/smash scaling --out runs/scaling
-	$(BIN)/python -m analysis.scaling runs/scaling
+	$(BIN)/python -m smash_analysis.scaling runs/scaling
 
 best-known: $(STAMP) ## best known costs and bounds of the open instances, and what is still open (20 minutes)
 	$(BIN)/python -m smash sweep experiments/open.toml --out runs/open
@@ -87,12 +87,12 @@ best-known: $(STAMP) ## best known costs and bounds of the open instances, and w
 
 compare: $(STAMP) ## all planners, gadget and PDDL, on a stated subset of the committed sets (at most 30 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/compare.toml --out runs/compare
-	$(BIN)/python -m analysis.comparison runs/compare
+	$(BIN)/python -m smash_analysis.comparison runs/compare
 
 compare-full: $(STAMP) ## all planners on all of the committed sets (a day or more; says how many hours first)
 	$(BIN)/python -m smash sweep experiments/compare-full.toml --out runs/compare-full --dry-run
 	$(BIN)/python -m smash sweep experiments/compare-full.toml --out runs/compare-full
-	$(BIN)/python -m analysis.comparison runs/compare-full
+	$(BIN)/python -m smash_analysis.comparison runs/compare-full
 
 reproduce: $(STAMP) ## every table and figure, the paper's and ours, on stated small grids (about an hour; it can be resumed)
 	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt gurobipy
@@ -104,4 +104,4 @@ reproduce-full: $(STAMP) ## the same on the whole grids (days; says how many hou
 
 results: reproduce ## keep the products of `make reproduce` in results/, and draw the README's figures from them
 	$(BIN)/python -m smash reproduce --copy-to results
-	$(BIN)/python -m analysis.readme
+	$(BIN)/python -m smash_analysis.readme

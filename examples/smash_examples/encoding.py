@@ -4,7 +4,7 @@ Pick and place stay as in the domain without topple, which makes the text short.
 fd-lama:axioms` plans in it; planners that take no axioms say `unsupported`.
 """
 
-from baselines.encodings import PICK_AND_PLACE, Encoding
+from smash_baselines.encodings import PICK_AND_PLACE, Encoding
 
 PREDICATES = """
     (over ?z ?b - block)              ; ?z stands somewhere above ?b in one pile

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from time import perf_counter
 
-from smash.planners.demands import demands_of
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
 from smash.problem import Action, Instance, Law, State
+from smash.problem.views.demands import demands_of
 
 WEIGHTS = (5, 2, 1)
 """How much the estimate counts against the cost so far; with 1 the first plan found is optimal."""

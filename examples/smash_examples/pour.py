@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from smash.problem.aggregating import AggregatingKind, Hop
+from smash.problem.actions.kind import AggregatingKind, Hop
 from smash.problem.model import TABLE, Aggregating, Instance, PlanOptions, State
 
 

@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator
 
-from baselines.family.carry import CarryPart, room
-from baselines.family.part import Part, Telling
-from baselines.names import Fact, Step
+from smash_baselines.names import Fact, Step
+from smash_baselines.parts.carry import CarryPart, room
+from smash_baselines.parts.part import Part, Telling
+
 from smash.problem.model import Action, Instance, PlanOptions, State
 from smash_examples.pour import Pour
 

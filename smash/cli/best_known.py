@@ -7,9 +7,9 @@ from pathlib import Path
 
 import click
 
-from smash.problem.documents import read_bytes, write_text
 from smash.problem.errors import MalformedFile
-from smash.problem.plan_file import read_plan
+from smash.problem.files.documents import read_bytes, write_text
+from smash.problem.files.plans import read_plan
 
 list_option = click.option(
     "--list",
@@ -46,9 +46,9 @@ def update(results: tuple[Path, ...], directory: Path | None) -> None:
     Example:
       smash best-known update runs/open
     """
-    from smash.experiments.best_known import BestKnown
-    from smash.experiments.best_known_file import FILE, LIST, read_best_known, write_best_known
-    from smash.experiments.records import RUNS, read_records
+    from smash.experiments.best_known.best_known import BestKnown
+    from smash.experiments.best_known.files import FILE, LIST, read_best_known, write_best_known
+    from smash.experiments.sweeps.records import RUNS, read_records
 
     directory = directory or LIST
     known = read_best_known(directory) if (directory / FILE).is_file() else BestKnown(directory)
@@ -80,9 +80,9 @@ def add(plan: Path, by: str, certificate: Path | None, directory: Path | None) -
     Example:
       smash best-known add mine.json --by "A. Researcher, my-planner 1.2"
     """
-    from smash.experiments.best_known import Found
-    from smash.experiments.best_known_file import LIST, read_best_known, write_best_known
-    from smash.experiments.submission import accept
+    from smash.experiments.best_known.best_known import Found
+    from smash.experiments.best_known.files import LIST, read_best_known, write_best_known
+    from smash.experiments.best_known.submission import accept
     from smash.problem.certificate import read_certificate
 
     submitted = read_plan(plan)
@@ -113,8 +113,8 @@ def table(into: Path | None, directory: Path | None) -> None:
     Example:
       smash best-known table --into docs/open-instances.md
     """
-    from smash.experiments.best_known_file import LIST, read_best_known
-    from smash.experiments.open_table import open_table, put_between
+    from smash.experiments.best_known.files import LIST, read_best_known
+    from smash.experiments.best_known.open_table import open_table, put_between
 
     text = open_table(read_best_known(directory or LIST))
     if into is None:

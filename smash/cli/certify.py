@@ -10,10 +10,10 @@ import click
 from smash.cli import fail
 from smash.cli.choices import SECONDS
 from smash.problem.certificate import certificate_text
-from smash.problem.documents import write_text
 from smash.problem.feasibility import why_infeasible
-from smash.problem.instance_file import read_instance
-from smash.problem.plan_file import read_plan
+from smash.problem.files.documents import write_text
+from smash.problem.files.instances import read_instance
+from smash.problem.files.plans import read_plan
 
 
 @click.command("certify")

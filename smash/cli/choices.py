@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from smash.problem.family import FAMILY
+from smash.problem.actions.registry import FAMILY
 
 without_option = click.option(
     "--without",

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from smash.cli.sweep import installed_runs, run_all
-from smash.experiments.experiment import Experiment, PlannerEntry, check_experiment
-from smash.experiments.job import DEFAULT_MEMORY
-from smash.experiments.keep import keep
+from smash.experiments.isolation.job import DEFAULT_MEMORY
+from smash.experiments.sweeps.experiment import Experiment, PlannerEntry, check_experiment
+from smash.experiments.sweeps.keep import keep
 from smash.problem.errors import Unsupported
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def command(
       smash compare multi-4 multi-9 --planner smash --planner smash-layered --planner fd-lama --jobs 2
     """
     try:
-        from analysis import comparison
+        from smash_analysis import comparison
     except ImportError as error:
         raise Unsupported(f"analysis is not installed ({error}): pip install 'smash-testbed[analysis]'") from None
     name = "compare-" + "-".join(Path(suite).name or "here" for suite in suites)

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
-from smash.problem.instance_file import instance_from_document, read_instance, write_instance
+from smash.problem.files.instances import instance_from_document, read_instance, write_instance
 
 
 @click.command("costs")
@@ -27,11 +27,11 @@ def command(results: Path, instance: Path, scene: Path | None, out: Path | None)
       smash costs runs/scoop examples/scoop-seconds.json --scene examples/scoop-scene.toml
       smash costs runs/tables my.json --out my-in-milliseconds.json
     """
-    from smash.execution.scene_file import default_scene, read_scene
-    from smash.execution.unrolled import unrolled_positions
-    from smash.experiments.durations import Duration, durations, fit
-    from smash.experiments.episodes import EPISODE_RUN_FORMAT, EPISODES
-    from smash.experiments.records import RUNS, read_records
+    from smash.execution.layout.unrolled import unrolled_positions
+    from smash.execution.scene.scene_file import default_scene, read_scene
+    from smash.experiments.episodes.episodes import EPISODE_RUN_FORMAT, EPISODES
+    from smash.experiments.studies.durations import Duration, durations, fit
+    from smash.experiments.sweeps.records import RUNS, read_records
 
     problem = read_instance(instance)
     tabletop = default_scene() if scene is None else read_scene(scene)

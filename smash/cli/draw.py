@@ -9,9 +9,9 @@ from pathlib import Path
 import click
 
 from smash.cli.choices import without_option
-from smash.problem.instance_file import read_instance
+from smash.problem.files.instances import read_instance
+from smash.problem.files.plans import read_plan
 from smash.problem.model import Action, Instance, PlanOptions
-from smash.problem.plan_file import read_plan
 from smash.problem.rules import Law
 
 OUT = click.option(

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
-from smash.problem.documents import require_writable
+from smash.problem.files.documents import require_writable
 
 
 @click.command("draw-scene")
@@ -24,9 +24,9 @@ def command(scene: Path | None, out: Path | None, height: int, buffer_height: in
     Example:
       smash draw-scene my-scene.toml --out scene.png
     """
-    from smash.execution.conditions import violations
-    from smash.execution.draw_scene import draw
-    from smash.execution.scene_file import default_scene, read_scene
+    from smash.execution.layout.conditions import violations
+    from smash.execution.layout.drawing import draw
+    from smash.execution.scene.scene_file import default_scene, read_scene
 
     require_writable(out)
     tabletop = default_scene() if scene is None else read_scene(scene)

@@ -8,9 +8,8 @@ from typing import Any
 import click
 
 from smash.cli.signals import stopped_by_signals
-from smash.experiments.asked import note_asked
-from smash.experiments.display import span
-from smash.experiments.episodes import (
+from smash.experiments.episodes.asked import note_asked
+from smash.experiments.episodes.episodes import (
     EPISODE_RUN_FORMAT,
     EPISODES,
     POLICIES,
@@ -19,7 +18,8 @@ from smash.experiments.episodes import (
     episode_runs,
     run_all,
 )
-from smash.experiments.records import Records
+from smash.experiments.sweeps.display import span
+from smash.experiments.sweeps.records import Records
 from smash.problem.errors import Interrupted
 
 SECONDS_AN_EPISODE = 5.0
@@ -63,7 +63,7 @@ def command(
       smash episodes runs/tables --label smash --policy replan --policy open --seeds 3
     """
     if scene is not None:
-        from smash.execution.scene_file import read_scene
+        from smash.execution.scene.scene_file import read_scene
 
         read_scene(scene)
     file = None if scene is None else str(scene.resolve())

@@ -9,10 +9,10 @@ import click
 from smash.cli import fail
 from smash.cli.choices import SECONDS
 from smash.cli.signals import ended_by_signals
-from smash.problem.documents import require_writable, write_text
-from smash.problem.instance_file import read_instance
+from smash.problem.files.documents import require_writable, write_text
+from smash.problem.files.instances import read_instance
+from smash.problem.files.plans import read_plan
 from smash.problem.plan import check_plan
-from smash.problem.plan_file import read_plan
 
 
 @click.command("execute")
@@ -67,15 +67,15 @@ def command(
     verdict = check_plan(problem, filed)
     if not verdict.accepted:
         fail(f"{plan}: {verdict}", 3)
-    from smash.execution.scene_file import default_scene, read_scene
+    from smash.execution.scene.scene_file import default_scene, read_scene
 
     tabletop = default_scene() if scene is None else read_scene(scene)
     tabletop.bind(problem)
-    from smash.execution.capture import Capture
     from smash.execution.episode import Performed, episode_text
     from smash.execution.executor import Executor
     from smash.execution.policy import OPEN
-    from smash.experiments.replanning import replanner as make_replanner
+    from smash.execution.viewing.capture import Capture
+    from smash.experiments.episodes.replanning import replanner as make_replanner
 
     capture = Capture(replay=replay, video=video, stills=stills, trajectory=trajectory)
     from rich.console import Console

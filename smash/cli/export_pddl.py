@@ -8,7 +8,7 @@ import click
 
 from smash.cli.choices import without_option
 from smash.problem.errors import MalformedFile
-from smash.problem.instance_file import read_instance
+from smash.problem.files.instances import read_instance
 from smash.problem.model import PlanOptions
 
 
@@ -42,7 +42,7 @@ def command(
       smash export-pddl instance.json --encoding conditional --out my-pddl
       smash export-pddl scoop.json --without lift --out my-pddl
     """
-    from baselines.task import compile_instance
+    from smash_baselines.task import compile_instance
 
     options = PlanOptions(not no_topple, max_topple, without=without)
     task = compile_instance(read_instance(instance), options, encoding)

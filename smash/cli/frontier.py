@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 import click
 
 from smash.cli.choices import SECONDS
-from smash.experiments.frontier import FrontierPoint, fewest_buffers, frontier
+from smash.experiments.studies.frontier import FrontierPoint, fewest_buffers, frontier
 from smash.planners.registry import DEFAULT, get_planner
 from smash.problem.errors import MalformedFile
-from smash.problem.instance_file import read_instance
-from smash.problem.suites import read_suite
+from smash.problem.files.instances import read_instance
+from smash.problem.sets.suites import read_suite
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -120,7 +120,7 @@ def _tables(points: list[FrontierPoint], most: int) -> list[Table]:
 
 def _write(points: list[FrontierPoint], title: str, out: Path) -> None:
     """Write the points as CSV and draw them."""
-    from analysis.frontier import frontier_figure
+    from smash_analysis.charts.frontier import frontier_figure
 
     out.mkdir(parents=True, exist_ok=True)
     rows = [point.row() for point in points]

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
-from smash.problem.generators import BENCHMARKS, generate
-from smash.problem.instance_file import write_instance
+from smash.problem.files.instances import write_instance
+from smash.problem.sets.generators import BENCHMARKS, generate
 
 
 @click.command("generate")

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
-from smash.problem.blocksworld import read_blocksworld
-from smash.problem.instance_file import write_instance
+from smash.problem.blocksworld.problem_file import read_blocksworld
+from smash.problem.files.instances import write_instance
 
 
 @click.command("import-blocks")

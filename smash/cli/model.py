@@ -10,7 +10,7 @@ from smash.cli.choices import without_option
 from smash.planners.protocol import SolveOptions, why_unsupported
 from smash.planners.registry import get_planner
 from smash.problem.errors import Unsupported
-from smash.problem.instance_file import read_instance
+from smash.problem.files.instances import read_instance
 
 
 @click.command("model")
@@ -50,7 +50,7 @@ def command(
         raise Unsupported(f"planner {planner!r}: unsupported: {reason}")
     model = build(problem, options)
     if out is not None:
-        from smash.planners import highs
+        from smash.planners.milp.solvers import highs
 
         highs.write(model, out)
     click.echo(", ".join(f"{count} {what.replace('_', ' ')}" for what, count in model.size().items()))

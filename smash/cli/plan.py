@@ -13,14 +13,14 @@ import click
 from smash.cli import fail
 from smash.cli.choices import SECONDS, without_option
 from smash.cli.signals import stopped_by_signals
-from smash.experiments.isolation import run_isolated
-from smash.experiments.job import DEFAULT_MEMORY, Job, Report
+from smash.experiments.isolation.caller import run_isolated
+from smash.experiments.isolation.job import DEFAULT_MEMORY, Job, Report
 from smash.planners.protocol import MOST_THREADS, OnIncumbent, SolveOptions
 from smash.planners.registry import DEFAULT
-from smash.problem.documents import require_writable, write_text
-from smash.problem.instance_file import read_instance
+from smash.problem.files.documents import require_writable, write_text
+from smash.problem.files.instances import read_instance
+from smash.problem.files.plans import plan_text
 from smash.problem.model import Action
-from smash.problem.plan_file import plan_text
 
 
 @click.command("plan")
@@ -96,7 +96,7 @@ def command(
 
 def _trusted(estimates: Path, max_topple: int | None) -> int:
     """The largest topple that execution can be trusted with, and that is asked for; 0 for none."""
-    from smash.execution.estimates import read_estimates
+    from smash.execution.trials.estimates import read_estimates
 
     trusted = read_estimates(estimates).trusted_size()
     if not trusted:

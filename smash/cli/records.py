@@ -11,8 +11,8 @@ import click
 from smash.problem.errors import MalformedFile, SmashError, Unsupported
 
 if TYPE_CHECKING:
-    from smash.experiments.audit import Check
-    from smash.experiments.experiment import Run
+    from smash.experiments.sweeps.audit import Check
+    from smash.experiments.sweeps.experiment import Run
 
 results_argument = click.argument("results", type=click.Path(path_type=Path, file_okay=False))
 
@@ -48,8 +48,8 @@ def check(results: Path, experiment: Path | None) -> None:
       smash records check runs/ablation
       smash records check runs/few-buffers --experiment few-buffers.toml
     """
-    from smash.experiments.audit import audit
-    from smash.experiments.episode_audit import audit_episodes
+    from smash.experiments.episodes.audit import audit_episodes
+    from smash.experiments.sweeps.audit import audit
 
     checks = audit(results, _planned(results, experiment)) + audit_episodes(results)
     _show(checks)
@@ -66,7 +66,7 @@ def _planned(results: Path, given: Path | None) -> Sequence[Run] | str:
     Raises:
         MalformedFile: where the file cannot be read, or a set that it names is not there.
     """
-    from smash.experiments.experiment import experiment_runs, read_experiment
+    from smash.experiments.sweeps.experiment import experiment_runs, read_experiment
 
     copy = results / "experiment.toml"
     if given is None and not copy.is_file():
@@ -112,9 +112,8 @@ def export(results: Path, out: Path) -> None:
     """
     try:
         import pyarrow  # noqa: F401
-
-        from analysis import export as tables
-        from analysis.records import NoRecords
+        from smash_analysis import export as tables
+        from smash_analysis.records import NoRecords
     except ImportError as error:
         raise Unsupported(f"analysis is not installed ({error}): pip install 'smash-testbed[analysis]'") from None
     try:

@@ -26,9 +26,8 @@ def command(results: Path, out: Path | None) -> None:
     try:
         import jinja2  # noqa: F401
         import matplotlib  # noqa: F401
-
-        from analysis.records import NoRecords
-        from analysis.report import page
+        from smash_analysis.records import NoRecords
+        from smash_analysis.report import page
     except ImportError as error:
         raise SmashError(f"analysis is not installed ({error}): pip install 'smash-testbed[analysis]'") from None
     try:

@@ -13,12 +13,12 @@ import click
 
 import smash
 from smash.cli.signals import stopped_by_signals
-from smash.experiments.display import span
-from smash.experiments.locking import hold
-from smash.experiments.manifest import write_manifest
-from smash.experiments.reproduce import Planned, Record, Reproduction, last_line
-from smash.experiments.steps import read_steps
+from smash.experiments.reproduction.manifest import write_manifest
+from smash.experiments.reproduction.reproduce import Planned, Record, Reproduction, last_line
+from smash.experiments.reproduction.stages import read_steps
+from smash.experiments.sweeps.display import span
 from smash.problem.errors import Interrupted, MalformedFile, SmashError
+from smash.records.locking import hold
 
 EXPERIMENTS = Path(smash.__file__).parent.parent / "experiments"
 LEFT = ("to do", "continued", "stale")

@@ -9,9 +9,9 @@ import click
 
 from smash.cli.choices import SECONDS
 from smash.cli.sweep import installed_runs, run_all
-from smash.experiments.experiment import INSTANCES
-from smash.experiments.keep import keep
-from smash.experiments.scaling import LARGEST, SIZES, scaling_experiment, write_scaling_suites
+from smash.experiments.studies.scaling import LARGEST, SIZES, scaling_experiment, write_scaling_suites
+from smash.experiments.sweeps.experiment import INSTANCES
+from smash.experiments.sweeps.keep import keep
 
 
 @click.command("scaling")
@@ -35,7 +35,8 @@ def command(
     """Run planners on random instances of 4 to 1,000 blocks, with and without topple, and record every run.
 
     Each size has no buffer, the paper's 12, and as many as blocks. Curves and growth exponents are made from the
-    records by `python -m analysis.scaling OUT`; `make scaling` does both. Start it again and it does what is left.
+    records by `python -m smash_analysis.scaling OUT`; `make scaling` does both. Start it again and it does what is
+    left.
 
     \b
     Example:

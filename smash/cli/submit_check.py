@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from smash.problem.certificate import read_certificate
-from smash.problem.plan_file import read_plan
+from smash.problem.files.plans import read_plan
 
 
 @click.command("submit-check")
@@ -32,11 +32,11 @@ def command(plan: Path, certificate: Path | None, directory: Path | None) -> Non
 
     \b
     Example:
-      smash plan smash/problem/suites/open-on/open-on-04.json --no-topple --budget 300 --out mine.json
+      smash plan smash/problem/sets/committed/open-on/open-on-04.json --no-topple --budget 300 --out mine.json
       smash submit-check mine.json
     """
-    from smash.experiments.best_known_file import LIST, read_best_known
-    from smash.experiments.submission import judge
+    from smash.experiments.best_known.files import LIST, read_best_known
+    from smash.experiments.best_known.submission import judge
 
     submitted = read_plan(plan)
     proof = None if certificate is None else read_certificate(certificate)

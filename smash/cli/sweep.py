@@ -11,15 +11,15 @@ from threading import Event
 import click
 
 from smash.cli.signals import stopped_by_signals
-from smash.experiments.cluster import connected
-from smash.experiments.cluster import slurm_script as batch_script
-from smash.experiments.display import Progress
 from smash.experiments.environment import commit
-from smash.experiments.experiment import Experiment, Run, experiment_runs, not_installed, read_experiment
-from smash.experiments.keep import keep
-from smash.experiments.records import Records
-from smash.experiments.sweep import execute, local_task, sweep
-from smash.problem.documents import write_text
+from smash.experiments.sweeps.cluster import connected
+from smash.experiments.sweeps.cluster import slurm_script as batch_script
+from smash.experiments.sweeps.display import Progress
+from smash.experiments.sweeps.experiment import Experiment, Run, experiment_runs, not_installed, read_experiment
+from smash.experiments.sweeps.keep import keep
+from smash.experiments.sweeps.records import Records
+from smash.experiments.sweeps.sweep import execute, local_task, sweep
+from smash.problem.files.documents import write_text
 
 
 @click.command("sweep")

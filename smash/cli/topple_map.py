@@ -11,7 +11,7 @@ from smash.cli.signals import stopped_by_signals
 from smash.problem.errors import Interrupted
 
 if TYPE_CHECKING:
-    from smash.execution.topple_map import Trial
+    from smash.execution.trials.topple_map import Trial
 
 
 @click.command("topple-map")
@@ -34,10 +34,10 @@ def command(highest_cut: int, most: int, seeds: int, scene: Path | None, jobs: i
     Example:
       smash topple-map --highest-cut 3 --most 5 --jobs 2
     """
-    from smash.execution.estimates import ENOUGH, TRUSTED, write_estimates
-    from smash.execution.scene_file import default_scene, read_scene
-    from smash.execution.topple_map import draw, estimates
-    from smash.experiments.topple_trials import read_trials, run_trials, wanted_trials
+    from smash.execution.scene.scene_file import default_scene, read_scene
+    from smash.execution.trials.estimates import ENOUGH, TRUSTED, write_estimates
+    from smash.execution.trials.topple_map import draw, estimates
+    from smash.experiments.episodes.topple_trials import read_trials, run_trials, wanted_trials
 
     tabletop = default_scene() if scene is None else read_scene(scene)
     out.mkdir(parents=True, exist_ok=True)

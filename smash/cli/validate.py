@@ -7,9 +7,9 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
-from smash.problem.instance_file import read_instance
+from smash.problem.files.instances import read_instance
+from smash.problem.files.plans import read_plan
 from smash.problem.plan import check_plan
-from smash.problem.plan_file import read_plan
 
 
 @click.command("validate")

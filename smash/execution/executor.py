@@ -13,23 +13,23 @@ from time import perf_counter
 
 import numpy as np
 
-from smash.execution.aggregate_motion import Geometry
+from smash.execution.actions.kind import Geometry
+from smash.execution.actions.pick_and_place import Steps
 from smash.execution.episode import Arrangement, Episode, Failure, Origin, Performed, Times, Totals
-from smash.execution.errors import ExecutionFailure, Fell, NotAtGoal
 from smash.execution.grounding import Grounder, Task
 from smash.execution.performing import Performer
+from smash.execution.physics.world import Frame, World
 from smash.execution.policy import Policy
 from smash.execution.readback import NOWHERE, fallen_off
 from smash.execution.recovery import Recovery
-from smash.execution.robot import READY
-from smash.execution.start import starting_carriers, starting_poses
-from smash.execution.steps import Steps
-from smash.execution.tabletop import Tabletop
-from smash.execution.world import Frame, World
+from smash.execution.scene.start import starting_carriers, starting_poses
+from smash.execution.scene.tabletop import Tabletop
+from smash.motion.errors import ExecutionFailure, Fell, NotAtGoal
+from smash.motion.robot import READY
 from smash.problem.errors import IllegalAction
+from smash.problem.files.plans import action_from_list, action_list
 from smash.problem.model import Action, Instance, PlanOptions, State
 from smash.problem.plan import Plan
-from smash.problem.plan_file import action_from_list, action_list
 from smash.problem.rules import Law
 
 Replanner = Callable[[Instance, PlanOptions], Sequence[Action] | None]

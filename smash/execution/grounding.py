@@ -11,16 +11,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from smash.execution.aggregate_motion import Geometry
-from smash.execution.block_pose import BlockPose, standing
-from smash.execution.errors import ExecutionFailure, NoMotion
-from smash.execution.family import MOTIONS
-from smash.execution.poses import Vector
-from smash.execution.scene import Scene
-from smash.execution.steps import Approach, Move, Segment, Steps
+from smash.execution.actions.kind import Geometry
+from smash.execution.actions.pick_and_place import Approach, Move, Segment, Steps
+from smash.execution.actions.registry import MOTIONS
+from smash.execution.scene.block_pose import BlockPose, standing
 from smash.execution.stopwatch import Stopwatch
+from smash.motion.errors import ExecutionFailure, NoMotion
+from smash.motion.obstacles import Scene
+from smash.motion.poses import Vector
+from smash.problem.actions.registry import kind_of
 from smash.problem.errors import Unsupported
-from smash.problem.family import kind_of
 from smash.problem.model import Action, Aggregating, Pick, Place, State
 
 

@@ -11,16 +11,16 @@ from math import hypot
 
 import numpy as np
 
-from smash.execution.aggregate_motion import Geometry
+from smash.execution.actions.kind import Geometry
+from smash.execution.actions.pick_and_place import OPEN_SECONDS, OPENINGS, Approach, Grip, Move, Segment
+from smash.execution.actions.registry import MOTIONS
 from smash.execution.episode import Performed
-from smash.execution.errors import ExecutionFailure, NoIk, OutOfReach, Slip
-from smash.execution.family import MOTIONS
 from smash.execution.grounding import Grounder, Task
+from smash.execution.physics.world import World
 from smash.execution.policy import Policy
 from smash.execution.readback import read_state
-from smash.execution.steps import OPEN_SECONDS, OPENINGS, Approach, Grip, Move, Segment
 from smash.execution.stopwatch import Stopwatch
-from smash.execution.world import World
+from smash.motion.errors import ExecutionFailure, NoIk, OutOfReach, Slip
 from smash.problem.model import TABLE, Aggregating, Pick, Place, State
 
 GRASPED_WITHIN = 0.5

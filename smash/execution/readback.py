@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import pi
 
-from smash.execution.aggregate_motion import Geometry
-from smash.execution.block_pose import BlockPose
-from smash.execution.tabletop import Slot, Tabletop
-from smash.execution.tray import heading
+from smash.execution.actions.kind import Geometry
+from smash.execution.scene.block_pose import BlockPose
+from smash.execution.scene.tabletop import Slot, Tabletop
+from smash.execution.scene.tray import heading
 from smash.problem.model import State
 
 PLACED_WITHIN = 1 / 3

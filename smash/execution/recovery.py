@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from smash.execution.errors import ExecutionFailure
-from smash.execution.family import MOTIONS
+from smash.execution.actions.registry import MOTIONS
 from smash.execution.performing import Performer
+from smash.motion.errors import ExecutionFailure
 from smash.problem.model import TABLE, Action, Aggregating, Instance, Pick, Place
 
 NEAR = 0.11

@@ -11,7 +11,8 @@ from importlib.metadata import PackageNotFoundError, entry_points, version
 from pathlib import Path
 from typing import Any
 
-from baselines.encodings import GROUP as ENCODINGS
+from smash_baselines.encodings import GROUP as ENCODINGS
+
 from smash.planners.registry import GROUP
 
 PACKAGES = (

@@ -174,7 +174,7 @@ class PartReading(Protocol):
 
     @property
     def name(self) -> str:
-        """The action's name, unique in a gadget, as in `smash.problem.family`."""
+        """The action's name, unique in a gadget, as in `smash.problem.actions.registry`."""
         ...
 
     @property

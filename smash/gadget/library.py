@@ -16,9 +16,9 @@ from itertools import pairwise
 
 from smash.gadget.builder import GadgetBuilder
 from smash.gadget.elements import EdgeKind, NodeKind
-from smash.gadget.family import parts_of
 from smash.gadget.graph import Gadget
-from smash.gadget.topple import TopplePart
+from smash.gadget.parts.registry import parts_of
+from smash.gadget.parts.topple import TopplePart
 from smash.problem.costs import UNIT_COSTS, Costs
 from smash.problem.model import Instance, PlanOptions
 

@@ -10,8 +10,8 @@ from typing import NamedTuple
 from smash.gadget.elements import Aggregate, NodeKind
 from smash.gadget.graph import Gadget
 from smash.gadget.motion import settled
+from smash.problem.actions.registry import kind_of
 from smash.problem.errors import IllegalAction
-from smash.problem.family import kind_of
 from smash.problem.model import TABLE, Action, Aggregating, Instance, Pick, Place, PlanOptions, State
 from smash.problem.rules import Law
 

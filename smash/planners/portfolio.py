@@ -8,10 +8,10 @@ from typing import Any, ClassVar
 
 from smash.planners.astar import BeamSearch, StateSearch
 from smash.planners.greedy import greedy_steps
-from smash.planners.indexed import Indexed
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, Relay, SolveOptions
-from smash.problem.family import FAMILY, is_plain
+from smash.problem.actions.registry import FAMILY, is_plain
 from smash.problem.model import Instance
+from smash.problem.views.numbered import Indexed
 
 SPARE_SECONDS = 0.05
 """Kept back from the budget for the end of the last part."""
@@ -74,7 +74,7 @@ class SmashPlanner(BasePlanner):
 
         The search over the law's states comes first, the layered model gets what it leaves.
         """
-        from smash.planners.family.solve import offer_twin, search_family
+        from smash.planners.astar.law_solve import offer_twin, search_family
 
         began = perf_counter()
         deadline = began + budget - min(SPARE_SECONDS, budget / 10)

@@ -1,6 +1,8 @@
 """The law and its files: instances, states, actions, goals, the checker, generators, blocks-world import."""
 
-from smash.problem.carry import Carry
+from smash.problem.actions.carry import Carry
+from smash.problem.actions.lift import Lift
+from smash.problem.actions.topple import Topple
 from smash.problem.costs import Costs
 from smash.problem.errors import (
     IllegalAction,
@@ -10,8 +12,8 @@ from smash.problem.errors import (
     SmashError,
     Unsupported,
 )
-from smash.problem.instance_file import make_instance, read_instance, write_instance
-from smash.problem.lift import Lift
+from smash.problem.files.instances import make_instance, read_instance, write_instance
+from smash.problem.files.plans import read_plan, write_plan
 from smash.problem.model import (
     TABLE,
     Action,
@@ -27,9 +29,7 @@ from smash.problem.model import (
     State,
 )
 from smash.problem.plan import Incumbent, Plan, check_plan
-from smash.problem.plan_file import read_plan, write_plan
 from smash.problem.rules import Law, Verdict
-from smash.problem.topple import Topple
 
 __all__ = [
     "TABLE",

@@ -19,8 +19,8 @@ from typing import Literal, cast
 
 import msgspec
 
-from smash.problem.documents import convert, parse_json, read_bytes
 from smash.problem.errors import MalformedFile
+from smash.problem.files.documents import convert, parse_json, read_bytes
 from smash.problem.model import Instance, OnGoal, PlanOptions, StacksGoal
 
 ONE = 1_000_000

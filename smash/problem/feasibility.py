@@ -12,7 +12,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Sequence
 
-from smash.problem.family import kinds_of
+from smash.problem.actions.registry import kinds_of
 from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal
 
 Pile = tuple[str, ...]

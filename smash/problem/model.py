@@ -39,7 +39,7 @@ class Place:
 
 
 class Aggregating:
-    """Base of the actions that move several blocks at once: topple, carry, lift (`smash.problem.aggregating`)."""
+    """Base of the actions that move several blocks at once: topple, carry, lift (`smash.problem.actions.kind`)."""
 
     __slots__ = ()
 

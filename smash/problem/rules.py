@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
+from smash.problem.actions.registry import kind_of, kinds_of
 from smash.problem.errors import IllegalAction
-from smash.problem.family import kind_of, kinds_of
 from smash.problem.model import (
     TABLE,
     Action,

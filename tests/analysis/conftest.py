@@ -1,8 +1,8 @@
 """One small report, made once for all tests that look at it."""
 
 import pytest
+from smash_analysis.report.page import make
 
-from analysis.report.page import make
 from tests.analysis.made_up import record, small_sweep, write
 
 

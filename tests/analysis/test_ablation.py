@@ -4,12 +4,12 @@ import math
 
 import pandas as pd
 import pytest
+from smash_analysis.ablation import make
+from smash_analysis.records import NoRecords, incumbents_table, read_records, runs_table
+from smash_analysis.statistics.findings import findings, smallest_buffers
+from smash_analysis.tables.cells import matched_cells, variant_cells
+from smash_analysis.tables.readings import cutoff_check, readings
 
-from analysis.ablation import make
-from analysis.cells import matched_cells, variant_cells
-from analysis.findings import findings, smallest_buffers
-from analysis.readings import cutoff_check, readings
-from analysis.records import NoRecords, incumbents_table, read_records, runs_table
 from tests.analysis.made_up import record, write
 
 

@@ -1,9 +1,8 @@
 """The command line of the modules that make tables and figures."""
 
 import pytest
-
-from analysis import command
-from analysis.records import NoRecords
+from smash_analysis import command
+from smash_analysis.records import NoRecords
 
 
 def written(results, out):

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from smash_analysis.charts.curves import best_known, coverage_curve, quality_curve
+from smash_analysis.comparison import compared, comparison_table, failure_table, make, optima, outcome_table
 
-from analysis.comparison import compared, comparison_table, failure_table, make, optima, outcome_table
-from analysis.curves import best_known, coverage_curve, quality_curve
 from tests.analysis.made_up import record, write
 
 

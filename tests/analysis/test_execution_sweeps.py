@@ -2,10 +2,10 @@ import json
 
 import pandas as pd
 import pytest
+from smash_analysis.execution_sweeps import make, read_trials, saved_table, scene_table, size_table
+from smash_analysis.execution_tables import read_episodes
+from smash_analysis.records import NoRecords
 
-from analysis.execution_sweeps import make, read_trials, saved_table, scene_table, size_table
-from analysis.execution_tables import read_episodes
-from analysis.records import NoRecords
 from tests.analysis.test_execution_tables import record
 
 

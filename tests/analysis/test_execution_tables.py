@@ -1,9 +1,8 @@
 import json
 
 import pytest
-
-from analysis.execution_tables import failure_table, make, metric_table, paired_table, read_episodes, slower_table
-from analysis.records import NoRecords
+from smash_analysis.execution_tables import failure_table, make, metric_table, paired_table, read_episodes, slower_table
+from smash_analysis.records import NoRecords
 
 
 def record(instance, variant, seconds, success=True, seed=0, task=0.0):

@@ -2,8 +2,9 @@
 
 import math
 
-from analysis import metrics
-from analysis.records import runs_table
+from smash_analysis import metrics
+from smash_analysis.records import runs_table
+
 from tests.analysis.made_up import record
 
 

@@ -4,8 +4,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-
-from analysis.readme import COPIED, DRAWN, PAGES, data_hash, shown_hash, update
+from smash_analysis.readme import COPIED, DRAWN, PAGES, data_hash, shown_hash, update
 
 ROOT = Path(__file__).parents[2]
 
@@ -22,7 +21,7 @@ def pages(tmp_path):
 
 def test_the_committed_figures_and_tables_are_current(pages):
     became = dict(update(ROOT / "results", pages))
-    assert [name for name, what in became.items() if what == "made"] == [], "run: python -m analysis.readme"
+    assert [name for name, what in became.items() if what == "made"] == [], "run: python -m smash_analysis.readme"
     assert {became[name] for name in DRAWN} == {"current"}
 
 

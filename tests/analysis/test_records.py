@@ -2,8 +2,9 @@
 
 import json
 
-from analysis.comparison import make
-from analysis.records import read_records
+from smash_analysis.comparison import make
+from smash_analysis.records import read_records
+
 from tests.analysis.made_up import record
 
 

@@ -4,12 +4,12 @@ import json
 import re
 
 import pytest
+from smash_analysis.records import NoRecords
+from smash_analysis.report.grids import ablation_grids
+from smash_analysis.report.page import make
+from smash_analysis.report.pictures import scenes
+from smash_analysis.report.sources import find_sources
 
-from analysis.records import NoRecords
-from analysis.report.grids import ablation_grids
-from analysis.report.page import make
-from analysis.report.pictures import scenes
-from analysis.report.sources import find_sources
 from tests.analysis.made_up import DOCUMENT, record, small_sweep, write
 
 

@@ -1,8 +1,7 @@
 """The table of the scoop: plans and episodes of the same variant meet in one row, savings are paired by seed."""
 
 import pandas as pd
-
-from analysis.scoop import BASELINE, scoop_table
+from smash_analysis.scoop import BASELINE, scoop_table
 
 
 def run(variant, actions, cost, label="smash"):

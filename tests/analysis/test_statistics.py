@@ -7,9 +7,8 @@ import pandas as pd
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from analysis.statistics import bootstrap, bootstrap_ratio, is_range, paired, success_rate, wilson
-from analysis.tables import with_spread
+from smash_analysis.statistics.intervals import bootstrap, bootstrap_ratio, is_range, paired, success_rate, wilson
+from smash_analysis.tables.writing import with_spread
 
 
 def side(costs, seeds=(0,)):

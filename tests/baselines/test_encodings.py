@@ -3,12 +3,12 @@ import random
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from smash_baselines.encodings import DOMAINS, ENCODINGS, TOPPLE_ENCODINGS, unsupported_reason
+from smash_baselines.facts import trim_buffers
+from smash_baselines.read_problem import read_problem_text
+from smash_baselines.steps import actions_of, steps_of
+from smash_baselines.task import compile_instance
 
-from baselines.encodings import DOMAINS, ENCODINGS, TOPPLE_ENCODINGS, unsupported_reason
-from baselines.facts import trim_buffers
-from baselines.read_problem import read_problem_text
-from baselines.steps import actions_of, steps_of
-from baselines.task import compile_instance
 from smash.problem import (
     IllegalAction,
     Instance,
@@ -22,7 +22,7 @@ from smash.problem import (
     Unsupported,
     make_instance,
 )
-from smash.problem.instance_file import instance_document
+from smash.problem.files.instances import instance_document
 from smash.problem.model import PositionsGoal, StacksGoal
 from tests.strategies import instances, plan_options
 

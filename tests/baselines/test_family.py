@@ -6,13 +6,13 @@ import pytest
 from click.testing import CliRunner
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from smash_baselines.encodings import DOMAINS, family_encoding
+from smash_baselines.facts import named_blocks, trim_buffers
+from smash_baselines.parts.registry import PARTS
+from smash_baselines.planners import Aries, Enhsp, FdLama, FdLamaConditional, FdOpt, FdOptIpdb, SymkOpt
+from smash_baselines.steps import actions_of, steps_of
+from smash_baselines.task import compile_instance
 
-from baselines.encodings import DOMAINS, family_encoding
-from baselines.facts import named_blocks, trim_buffers
-from baselines.family.parts import PARTS
-from baselines.planners import Aries, Enhsp, FdLama, FdLamaConditional, FdOpt, FdOptIpdb, SymkOpt
-from baselines.steps import actions_of, steps_of
-from baselines.task import compile_instance
 from smash.cli.export_pddl import command
 from smash.planners.protocol import SolveOptions, why_unsupported
 from smash.problem import (
@@ -29,8 +29,8 @@ from smash.problem import (
     make_instance,
     write_instance,
 )
-from smash.problem.family import is_plain
-from smash.problem.sexpr import parse_expression
+from smash.problem.actions.registry import is_plain
+from smash.problem.blocksworld.sexpr import parse_expression
 from tests.baselines.test_encodings import random_walk
 from tests.cheapest import cheapest_plan
 from tests.family_strategies import family_instances, family_options
@@ -77,7 +77,7 @@ def test_the_domains_to_be_read_are_those_of_the_compiler(file):
 
 def test_unified_planning_reads_the_domains_and_accepts_a_plan():
     pytest.importorskip("unified_planning")
-    from baselines.up_problem import up_accepts
+    from smash_baselines.up_problem import up_accepts
 
     assert up_accepts(SCOOPED, compile_instance(scoop(capacities={}), PlanOptions(), "chain"))
     goal = PositionsGoal({"a": ("g1", 1), "b": ("g1", 2)})
@@ -91,9 +91,8 @@ def test_unified_planning_reads_the_domains_and_accepts_a_plan():
 @given(family_instances(max_blocks=3), family_options(), st.integers(0, 99))
 def test_unified_planning_simulates_what_the_law_does(instance, options, seed):
     pytest.importorskip("unified_planning")
+    from smash_baselines.up_problem import problem_of_task, up_plan
     from unified_planning.engines import UPSequentialSimulator
-
-    from baselines.up_problem import problem_of_task, up_plan
 
     if is_plain(instance, options):
         return

@@ -8,15 +8,15 @@ from pathlib import Path
 import psutil
 import pytest
 from hypothesis import HealthCheck, given, settings
+from smash_baselines import planners
+from smash_baselines.engines.downward import bound_in
+from smash_baselines.planners import Aries, Enhsp, FdLama, FdLamaChain, FdLamaFirst, FdOpt, FdOptIpdb, SymkOpt
 
-from baselines import planners
-from baselines.downward import bound_in
-from baselines.planners import Aries, Enhsp, FdLama, FdLamaChain, FdLamaFirst, FdOpt, FdOptIpdb, SymkOpt
 from smash.planners.protocol import SolveOptions
 from smash.planners.registry import get_planner
 from smash.problem import Law, PlannerOutOfMemory, PlanOptions, make_instance, read_instance
 from smash.problem.model import OnGoal, PositionsGoal, StacksGoal
-from smash.problem.suites import suite_files
+from smash.problem.sets.suites import suite_files
 from tests.oracle import optimal_cost
 from tests.strategies import instances, plan_options
 
@@ -156,7 +156,7 @@ def test_a_memory_limit_is_a_crash_with_a_name():
 
 SLEEPER = """
 import sys
-from baselines.planners import FdLama
+from smash_baselines.planners import FdLama
 from smash.planners.protocol import SolveOptions
 from smash.problem import read_instance
 print("started", flush=True)

@@ -2,18 +2,18 @@ import pytest
 
 pytest.importorskip("unified_planning")
 
+from smash_baselines.read_up import read_up_problem
+from smash_baselines.up_engine import SmashEngine
+from smash_baselines.up_problem import up_problem
 from unified_planning.engines import AnytimeGuarantee, OptimalityGuarantee, PlanGenerationResultStatus
 from unified_planning.io import PDDLReader, PDDLWriter
 from unified_planning.shortcuts import get_environment
 from unified_planning.test.examples import get_example_problems
 
-from baselines.read_up import read_up_problem
-from baselines.up_engine import SmashEngine
-from baselines.up_problem import up_problem
 from smash.problem import PlanOptions, Unsupported, make_instance, read_instance
-from smash.problem.instance_file import instance_document
+from smash.problem.files.instances import instance_document
 from smash.problem.model import StacksGoal
-from smash.problem.suites import suite_files
+from smash.problem.sets.suites import suite_files
 from tests.baselines.test_planners import figure_1
 from tests.oracle import optimal_cost
 
@@ -24,7 +24,7 @@ PLANNER = {"planner": "precedence"}
 def factory():
     environment = get_environment()
     environment.credits_stream = None
-    environment.factory.add_engine("smash", "baselines.up_engine", "SmashEngine")
+    environment.factory.add_engine("smash", "smash_baselines.up_engine", "SmashEngine")
     return environment.factory
 
 

@@ -1,18 +1,18 @@
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from smash_baselines.encodings import TOPPLE_ENCODINGS, unsupported_reason
+from smash_baselines.steps import steps_of
+from smash_baselines.task import compile_instance
 
-from baselines.encodings import TOPPLE_ENCODINGS, unsupported_reason
-from baselines.steps import steps_of
-from baselines.task import compile_instance
 from smash.problem import Law, PlanOptions, State
-from smash.problem.topple import Topple
+from smash.problem.actions.topple import Topple
 from tests.baselines.test_encodings import random_walk
 from tests.strategies import instances, plan_options
 
 pytest.importorskip("unified_planning")
 
-from baselines.up_problem import problem_of_task, up_accepts, up_plan
+from smash_baselines.up_problem import problem_of_task, up_accepts, up_plan
 
 
 @settings(max_examples=5, deadline=None, suppress_health_check=[HealthCheck.too_slow])

@@ -1,10 +1,11 @@
 import subprocess
 import sys
 
-from baselines.read_problem import read_problem_text
+from smash_baselines.read_problem import read_problem_text
+
 from smash.problem import read_instance
-from smash.problem.instance_file import instance_document
-from smash.problem.suites import suite_files
+from smash.problem.files.instances import instance_document
+from smash.problem.sets.suites import suite_files
 
 
 def export(*arguments: str) -> subprocess.CompletedProcess[str]:

@@ -5,11 +5,11 @@ import csv
 from click.testing import CliRunner
 
 from smash.cli.frontier import command
-from smash.experiments.frontier import fewest_buffers, frontier
+from smash.experiments.studies.frontier import fewest_buffers, frontier
 from smash.planners.portfolio import SmashPlanner
 from smash.problem import PlanOptions, make_instance, write_instance
 from smash.problem.model import StacksGoal
-from smash.problem.suites import read_suite, with_buffers
+from smash.problem.sets.suites import read_suite, with_buffers
 from tests.oracle import optimal_cost
 
 

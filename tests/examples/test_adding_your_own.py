@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, settings
+from smash_baselines.engines.configurations import FAST_DOWNWARD
 
-from baselines.configurations import FAST_DOWNWARD
 from smash.planners.protocol import SolveOptions
 from smash.problem import Law, PlanOptions
 from tests.oracle import optimal_cost
@@ -103,7 +103,7 @@ def test_the_instance_set_the_experiment_and_the_metric_meet_in_one_table(instal
     assert run(["instance_set.py", "towers"], installed, tmp_path).returncode == 0
     swept = run(["-m", "smash", "sweep", "experiment.toml"], installed, tmp_path)
     assert "12 runs recorded" in swept.stdout, swept.stderr
-    assert run(["-m", "analysis.comparison", "runs/towers"], installed, tmp_path).returncode == 0
+    assert run(["-m", "smash_analysis.comparison", "runs/towers"], installed, tmp_path).returncode == 0
     with (tmp_path / "runs" / "towers" / "comparison" / "comparison.csv").open() as rows:
         table = list(csv.DictReader(rows))
     of_smash = {row["variant"]: row for row in table if row["planner"] == "smash" and row["blocks"] == "6"}

@@ -3,7 +3,7 @@
 import numpy as np
 
 from smash.execution.episode import Arrangement, Episode, Performed, Times, Totals
-from smash.execution.recording import Recording
+from smash.execution.viewing.recording import Recording
 
 
 def recording_of(blocks, seconds=1.0, interval=0.08):

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from smash.execution.scene_file import read_scene
+from smash.execution.scene.scene_file import read_scene
 from smash.problem import Carrier, PositionsGoal, make_instance
 
 ROOT = Path(__file__).parents[2]

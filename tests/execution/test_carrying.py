@@ -6,22 +6,22 @@ from math import acos, pi
 import numpy as np
 import pytest
 
-from smash.execution.aggregate_motion import Geometry
-from smash.execution.block_pose import BlockPose, standing
-from smash.execution.errors import NoIk
+from smash.execution.actions.kind import Geometry
+from smash.execution.actions.pick_and_place import Move, Steps
+from smash.execution.actions.registry import MOTIONS
 from smash.execution.executor import Executor, observed_instance
-from smash.execution.family import MOTIONS
 from smash.execution.grounding import Grounder
 from smash.execution.policy import OPEN
 from smash.execution.readback import NOWHERE, read_state
-from smash.execution.robot import READY, panda
-from smash.execution.scene_file import default_scene
-from smash.execution.start import starting_carriers, starting_poses
-from smash.execution.steps import Move, Steps
-from smash.execution.tabletop import DoesNotFit, Slot
-from smash.execution.tray import Tray, heading
+from smash.execution.scene.block_pose import BlockPose, standing
+from smash.execution.scene.scene_file import default_scene
+from smash.execution.scene.start import starting_carriers, starting_poses
+from smash.execution.scene.tabletop import DoesNotFit, Slot
+from smash.execution.scene.tray import Tray, heading
+from smash.motion.errors import NoIk
+from smash.motion.robot import READY, panda
 from smash.problem import Carrier, Carry, Law, Pick, Place, PositionsGoal, State
-from smash.problem.family import FAMILY
+from smash.problem.actions.registry import FAMILY
 from tests.execution.episodes import plan_of
 from tests.execution.scooping import scoop, scoop_scene
 

@@ -6,12 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
-from smash.execution import kernel
-from smash.execution.collision import CollisionChecker, arm_model
-from smash.execution.fit_spheres import surface_samples
-from smash.execution.hulls import HullChecker, link_vertices
-from smash.execution.robot import LOWER, READY, UPPER, panda
-from smash.execution.scene import Attached, HandState, Scene
+from smash.motion import kernel
+from smash.motion.collision import CollisionChecker, arm_model
+from smash.motion.fit_spheres import surface_samples
+from smash.motion.hulls import HullChecker, link_vertices
+from smash.motion.obstacles import Attached, HandState, Scene
+from smash.motion.robot import LOWER, READY, UPPER, panda
 from tests.execution.towers import SIDE, tower_scene
 
 TOWERS = tower_scene({-1.7: 4, -0.5: 5, 0.7: 9})

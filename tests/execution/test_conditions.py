@@ -3,11 +3,11 @@ from math import radians
 
 import pytest
 
-from smash.execution.conditions import violations
-from smash.execution.draw_scene import draw
-from smash.execution.scene_file import default_scene
-from smash.execution.tabletop import Slot
-from smash.execution.tray import Tray
+from smash.execution.layout.conditions import violations
+from smash.execution.layout.drawing import draw
+from smash.execution.scene.scene_file import default_scene
+from smash.execution.scene.tabletop import Slot
+from smash.execution.scene.tray import Tray
 
 
 def scene(*stacks, buffers=()):

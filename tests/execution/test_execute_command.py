@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from smash.execution.scene_file import DEFAULT_SCENE
+from smash.execution.scene.scene_file import DEFAULT_SCENE
 from smash.problem import write_instance, write_plan
 from tests.execution.episodes import buried_plan, buried_target, plan_of
 

@@ -5,11 +5,11 @@ import pytest
 from smash.execution.episode import episode_text
 from smash.execution.executor import Executor, observed_instance
 from smash.execution.policy import OPEN
-from smash.execution.recording import Recording
-from smash.execution.scene_file import default_scene
-from smash.execution.tabletop import Friction
+from smash.execution.scene.scene_file import default_scene
+from smash.execution.scene.tabletop import Friction
+from smash.execution.viewing.recording import Recording
 from smash.problem import Law, Pick, Place, PositionsGoal, make_instance
-from smash.problem.documents import parse_json
+from smash.problem.files.documents import parse_json
 from tests.execution.episodes import buried_plan, buried_target, plan_of, swapped_pair, swapped_plan
 
 
@@ -152,10 +152,10 @@ def test_piles_that_do_not_stand_at_the_start_are_a_failure_before_any_step():
 @pytest.mark.slow
 @pytest.mark.parametrize("suite", ["single-9", "multi-4", "multi-6"])
 def test_committed_instances_succeed(suite):
-    from smash.experiments.replanning import replanner
+    from smash.experiments.episodes.replanning import replanner
     from smash.planners.greedy import GreedyPlanner
     from smash.planners.protocol import SolveOptions
-    from smash.problem.suites import read_suite
+    from smash.problem.sets.suites import read_suite
 
     options = SolveOptions()
     for instance in read_suite(suite)[:4]:

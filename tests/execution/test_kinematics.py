@@ -1,8 +1,8 @@
 import numpy as np
 
-from smash.execution.kinematics import along_line, inverse
-from smash.execution.poses import top_down
-from smash.execution.robot import LOWER, READY, UPPER, panda, within_limits
+from smash.motion.kinematics import along_line, inverse
+from smash.motion.poses import top_down
+from smash.motion.robot import LOWER, READY, UPPER, panda, within_limits
 
 
 def reachable_poses(count, seed=1):

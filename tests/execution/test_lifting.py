@@ -6,17 +6,17 @@ from math import acos
 import numpy as np
 import pytest
 
-from smash.execution.aggregate_motion import Geometry
-from smash.execution.errors import ExecutionFailure, NoIk
+from smash.execution.actions.kind import Geometry
+from smash.execution.actions.pick_and_place import Move, Steps
+from smash.execution.actions.registry import MOTIONS
 from smash.execution.executor import Executor
-from smash.execution.family import MOTIONS
 from smash.execution.policy import OPEN
 from smash.execution.readback import read_state
-from smash.execution.robot import READY, panda
-from smash.execution.scene_file import default_scene
-from smash.execution.start import starting_poses
-from smash.execution.steps import Move, Steps
-from smash.execution.tabletop import Slot
+from smash.execution.scene.scene_file import default_scene
+from smash.execution.scene.start import starting_poses
+from smash.execution.scene.tabletop import Slot
+from smash.motion.errors import ExecutionFailure, NoIk
+from smash.motion.robot import READY, panda
 from smash.problem import Lift, Pick, Place, PositionsGoal, State, make_instance
 from tests.execution.episodes import plan_of
 

@@ -1,15 +1,15 @@
 import numpy as np
 import pytest
 
-from smash.execution.collision import CollisionChecker
-from smash.execution.errors import NoMotion
-from smash.execution.hulls import HullChecker
-from smash.execution.kinematics import inverse
-from smash.execution.motion import MotionPlanner
-from smash.execution.motion_benchmark import run, touching
-from smash.execution.poses import top_down
-from smash.execution.robot import READY
-from smash.execution.scene import Scene
+from smash.execution.trials.motion_benchmark import run, touching
+from smash.motion.collision import CollisionChecker
+from smash.motion.errors import NoMotion
+from smash.motion.hulls import HullChecker
+from smash.motion.kinematics import inverse
+from smash.motion.motions import MotionPlanner
+from smash.motion.obstacles import Scene
+from smash.motion.poses import top_down
+from smash.motion.robot import READY
 from tests.execution.towers import SIDE, tower_scene
 
 

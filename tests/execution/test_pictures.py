@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from smash.execution.pictures import FILM_SIZE, SPEED_UP, action_at, film_frames, write_film
-from smash.execution.scene_file import default_scene
+from smash.execution.scene.scene_file import default_scene
+from smash.execution.viewing.pictures import FILM_SIZE, SPEED_UP, action_at, film_frames, write_film
 from tests.execution.made_up import episode_of, recording_of
 
 imageio = pytest.importorskip("imageio.v3")

@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from smash.execution.block_pose import standing
-from smash.execution.pushes import (
+from smash.execution.actions.pick_and_place import Move, Steps
+from smash.execution.actions.topple import (
     MOST_CUT,
     MOST_SWEPT,
     PUSH_MARGIN,
@@ -15,10 +15,10 @@ from smash.execution.pushes import (
     pushes_needed,
     topple,
 )
-from smash.execution.robot import READY, panda
-from smash.execution.scene_file import default_scene
-from smash.execution.steps import Move, Steps
-from smash.execution.tabletop import Slot
+from smash.execution.scene.block_pose import standing
+from smash.execution.scene.scene_file import default_scene
+from smash.execution.scene.tabletop import Slot
+from smash.motion.robot import READY, panda
 
 
 @given(st.integers(1, 12), st.integers(1, 12))

@@ -4,10 +4,10 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from smash.execution.aggregate_motion import Geometry
-from smash.execution.block_pose import BlockPose, quarter_turn, standing
+from smash.execution.actions.kind import Geometry
 from smash.execution.readback import read_state
-from smash.execution.scene_file import default_scene
+from smash.execution.scene.block_pose import BlockPose, quarter_turn, standing
+from smash.execution.scene.scene_file import default_scene
 
 SIDE = 0.045
 SLOTS = dict(zip(["s1", "s2", "s3"], default_scene().stacks, strict=False))

@@ -6,8 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from smash.execution.replay import goal_in_words, write_replay
-from smash.execution.scene_file import default_scene
+from smash.execution.scene.scene_file import default_scene
+from smash.execution.viewing.replay import goal_in_words, write_replay
 from smash.problem import OnGoal, PositionsGoal, StacksGoal, make_instance
 from tests.browser import CHROMIUM, Browser
 from tests.execution.made_up import episode_of, recording_of

@@ -5,8 +5,8 @@ import tomllib
 
 import pytest
 
-from smash.execution.scene_file import DEFAULT_SCENE, default_scene, read_scene, scene_from_document
-from smash.execution.tabletop import DIRECTIONS, DoesNotFit, Friction, Slot
+from smash.execution.scene.scene_file import DEFAULT_SCENE, default_scene, read_scene, scene_from_document
+from smash.execution.scene.tabletop import DIRECTIONS, DoesNotFit, Friction, Slot
 from smash.problem import MalformedFile, StacksGoal, make_instance
 
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from smash.execution.block_pose import BlockPose, standing
-from smash.execution.errors import NoMotion
-from smash.execution.robot import READY
-from smash.execution.scene_file import default_scene
-from smash.execution.steps import Move, Steps
+from smash.execution.actions.pick_and_place import Move, Steps
+from smash.execution.scene.block_pose import BlockPose, standing
+from smash.execution.scene.scene_file import default_scene
+from smash.motion.errors import NoMotion
+from smash.motion.robot import READY
 
 SIDE = 0.045
 

@@ -7,9 +7,9 @@ import pytest
 from click.testing import CliRunner
 
 from smash.cli import smash
-from smash.execution.estimates import Rate, read_estimates, write_estimates
-from smash.execution.scene_file import default_scene
-from smash.execution.topple_map import Landing, Trial, draw, estimates, run_trial
+from smash.execution.scene.scene_file import default_scene
+from smash.execution.trials.estimates import Rate, read_estimates, write_estimates
+from smash.execution.trials.topple_map import Landing, Trial, draw, estimates, run_trial
 from smash.problem.errors import MalformedFile
 
 

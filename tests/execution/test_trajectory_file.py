@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from smash.execution.robot import READY
-from smash.execution.timing import trapezoid
-from smash.execution.trajectory_file import read_trajectory, write_trajectory
+from smash.execution.viewing.trajectory_file import read_trajectory, write_trajectory
+from smash.motion.robot import READY
+from smash.motion.timing import trapezoid
 from smash.problem.errors import MalformedFile
 
 

@@ -1,7 +1,7 @@
 import numpy as np
 
-from smash.execution.poses import yaw_rotation
-from smash.execution.scene import Scene
+from smash.motion.obstacles import Scene
+from smash.motion.poses import yaw_rotation
 
 SIDE = 0.045
 

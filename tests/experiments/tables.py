@@ -1,7 +1,7 @@
 """The tables of a comparison but for what is measured, which is what two sweeps of the same runs must agree on."""
 
-from analysis.comparison import compared, comparison_table, outcome_table
-from analysis.records import read_records
+from smash_analysis.comparison import compared, comparison_table, outcome_table
+from smash_analysis.records import read_records
 
 MEASURED = ["first plan [s]", "best plan [s]", "memory [MiB]"]
 

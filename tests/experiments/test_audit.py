@@ -11,14 +11,14 @@ import pytest
 from click.testing import CliRunner
 
 from smash.cli import smash
-from smash.experiments.audit import audit
-from smash.experiments.experiment import experiment_runs, read_experiment
-from smash.experiments.job import Report
-from smash.experiments.records import record_of
-from smash.experiments.schema import RunRecord
+from smash.experiments.isolation.job import Report
+from smash.experiments.sweeps.audit import audit
+from smash.experiments.sweeps.experiment import experiment_runs, read_experiment
+from smash.experiments.sweeps.records import record_of
 from smash.planners.registry import get_planner
 from smash.problem.plan import Incumbent
 from smash.problem.rules import Law
+from smash.records.schema import RunRecord
 
 ROOT = Path(__file__).parents[2]
 EXPERIMENT = 'name = "few"\nsuites = ["multi-4"]\ninstances = 2\nbudgets = [1]\n[[planners]]\nname = "greedy"\n'

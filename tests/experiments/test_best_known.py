@@ -10,19 +10,19 @@ from click.testing import CliRunner
 
 from smash.cli.best_known import command as best_known
 from smash.cli.submit_check import command as submit_check
-from smash.experiments.best_known import BestKnown, Found, open_instances, options_of
-from smash.experiments.best_known_file import LIST, Contradiction, csv_text, read_best_known, write_best_known
-from smash.experiments.experiment import Experiment, PlannerEntry, experiment_runs
-from smash.experiments.isolation import run_isolated
-from smash.experiments.open_table import BEGIN, open_table, put_between
-from smash.experiments.records import Records, record_of
+from smash.experiments.best_known.best_known import BestKnown, Found, open_instances, options_of
+from smash.experiments.best_known.files import LIST, Contradiction, csv_text, read_best_known, write_best_known
+from smash.experiments.best_known.open_table import BEGIN, open_table, put_between
+from smash.experiments.isolation.caller import run_isolated
+from smash.experiments.sweeps.experiment import Experiment, PlannerEntry, experiment_runs
+from smash.experiments.sweeps.records import Records, record_of
 from smash.planners.precedence.certify import certify
 from smash.planners.protocol import SolveOptions
 from smash.planners.registry import get_planner
 from smash.problem import Law, MalformedFile, PlanOptions, SmashError, Topple
 from smash.problem.certificate import certificate_text
+from smash.problem.files.plans import plan_document, plan_text, read_plan
 from smash.problem.model import Pick, Place
-from smash.problem.plan_file import plan_document, plan_text, read_plan
 
 ROOT = Path(__file__).parents[2]
 NAME = "open-few-buffers-01"

@@ -8,8 +8,8 @@ import pytest
 from click.testing import CliRunner
 
 from smash.cli import smash
-from smash.experiments.cluster import slurm_script
-from smash.experiments.experiment import experiment_runs, read_experiment
+from smash.experiments.sweeps.cluster import slurm_script
+from smash.experiments.sweeps.experiment import experiment_runs, read_experiment
 
 ROOT = Path(__file__).parents[2]
 EXPERIMENT = """name = "few"

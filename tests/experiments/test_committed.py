@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from smash.experiments.experiment import experiment_runs, read_experiment
+from smash.experiments.sweeps.experiment import experiment_runs, read_experiment
 
 ROOT = Path(__file__).parents[2]
 

@@ -11,7 +11,7 @@ from collections import Counter
 
 import pytest
 
-from smash.experiments.records import RUNS
+from smash.experiments.sweeps.records import RUNS
 from tests.experiments.tables import tables
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("third_party"), pytest.mark.timeout(600)]

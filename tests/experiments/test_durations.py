@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from smash.experiments.durations import Duration, durations, fit
+from smash.experiments.studies.durations import Duration, durations, fit
 from tests.execution.scooping import scoop
 
 PLACES = {name: (x, 0.0) for name, x in {"s1": 0.0, "s2": 0.1, "g1": 1.0, "g2": 1.1, "left": 0.2, "right": 1.2}.items()}

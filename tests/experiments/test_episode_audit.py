@@ -7,9 +7,9 @@ import pytest
 from click.testing import CliRunner
 
 from smash.cli import smash
-from smash.execution.scene_file import read_scene
-from smash.experiments.asked import asked_runs, note_asked
-from smash.experiments.episode_audit import audit_episodes
+from smash.execution.scene.scene_file import read_scene
+from smash.experiments.episodes.asked import asked_runs, note_asked
+from smash.experiments.episodes.audit import audit_episodes
 from tests.analysis.made_up import record as made_up_run
 from tests.analysis.test_export import PLAN, WHOLE
 

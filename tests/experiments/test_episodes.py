@@ -13,8 +13,8 @@ import psutil
 import pytest
 
 from smash.execution.episode import Episode
-from smash.experiments.episode_worker import EpisodeLost, EpisodeWorker
-from smash.experiments.episodes import EPISODES, episode_runs, target_depth
+from smash.experiments.episodes.episodes import EPISODES, episode_runs, target_depth
+from smash.experiments.episodes.worker import EpisodeLost, EpisodeWorker
 from smash.problem import PositionsGoal, make_instance
 from smash.problem.errors import SmashError
 from tests.execution.episodes import swapped_pair

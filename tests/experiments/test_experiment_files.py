@@ -2,9 +2,9 @@
 
 import pytest
 
-from smash.experiments.experiment import experiment_runs, read_experiment
+from smash.experiments.sweeps.experiment import experiment_runs, read_experiment
 from smash.problem import MalformedFile
-from smash.problem.suites import read_suite, with_buffers
+from smash.problem.sets.suites import read_suite, with_buffers
 
 GOOD = """
 name = "try"

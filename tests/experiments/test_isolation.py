@@ -12,12 +12,12 @@ from threading import Event
 import psutil
 import pytest
 
-from smash.experiments.isolation import run_isolated
-from smash.experiments.job import Job
+from smash.experiments.isolation.caller import run_isolated
+from smash.experiments.isolation.job import Job
 from smash.planners.protocol import SolveOptions
 from smash.problem.errors import SmashError
-from smash.problem.instance_file import read_instance
-from smash.problem.plan_file import plan_from_document, plan_text
+from smash.problem.files.instances import read_instance
+from smash.problem.files.plans import plan_from_document, plan_text
 
 pytestmark = pytest.mark.usefixtures("third_party")
 

@@ -7,8 +7,8 @@ import pytest
 from click.testing import CliRunner
 
 from smash.cli import smash
-from smash.experiments.experiment import Experiment, PlannerEntry, experiment_runs, read_experiment
-from smash.experiments.keep import experiment_text, keep, suites
+from smash.experiments.sweeps.experiment import Experiment, PlannerEntry, experiment_runs, read_experiment
+from smash.experiments.sweeps.keep import experiment_text, keep, suites
 
 NAMES = ["my set", "../sets/my set", ".", "multi-4"]
 

@@ -14,8 +14,8 @@ import pytest
 from click.testing import CliRunner
 
 from smash.cli import smash
-from smash.experiments.reproduce import STALE
-from smash.experiments.steps import file_hash, read_steps
+from smash.experiments.reproduction.reproduce import STALE
+from smash.experiments.reproduction.stages import file_hash, read_steps
 from smash.problem import MalformedFile
 
 ROOT = Path(__file__).parents[2]
@@ -239,7 +239,7 @@ about = "Tiny."
 name = "ablation"
 about = "heatmaps"
 minutes = 1
-commands = ["smash sweep {here}/few.toml --out {out}/ablation", "python -m analysis.ablation {out}/ablation"]
+commands = ["smash sweep {here}/few.toml --out {out}/ablation", "python -m smash_analysis.ablation {out}/ablation"]
 products = ["ablation/runs.jsonl", "ablation/ablation/*"]
 [[steps]]
 name = "frontier"

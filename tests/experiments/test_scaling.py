@@ -4,11 +4,11 @@ import math
 
 import pytest
 from click.testing import CliRunner
+from smash_analysis.scaling import exponent, make
 
-from analysis.scaling import exponent, make
 from smash.cli.scaling import command
-from smash.experiments.experiment import check_experiment, experiment_runs
-from smash.experiments.scaling import LARGEST, scaling_experiment, write_scaling_suites
+from smash.experiments.studies.scaling import LARGEST, scaling_experiment, write_scaling_suites
+from smash.experiments.sweeps.experiment import check_experiment, experiment_runs
 
 
 def test_the_same_seed_writes_the_same_instances(tmp_path):

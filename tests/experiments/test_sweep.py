@@ -12,9 +12,9 @@ from contextlib import suppress
 import psutil
 import pytest
 
-from smash.experiments.locking import InUse
-from smash.experiments.records import DAMAGED, RUNS, Records
+from smash.experiments.sweeps.records import DAMAGED, RUNS, Records
 from smash.problem import MalformedFile
+from smash.records.locking import InUse
 from tests.experiments.tables import tables
 
 pytestmark = pytest.mark.usefixtures("third_party")

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from smash.problem import PlanOptions
-from smash.problem.instance_file import read_instance
+from smash.problem.files.instances import read_instance
 from tests.oracle import optimal_cost
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 
 from smash.planners.astar import AStarPlanner, StateSearch, driver, engine
-from smash.planners.indexed import Indexed, cost_of
 from smash.planners.protocol import SolveOptions
 from smash.problem import Law, PlanOptions, StacksGoal, make_instance
-from smash.problem.generators import generate
-from smash.problem.suites import read_suite
+from smash.problem.sets.generators import generate
+from smash.problem.sets.suites import read_suite
+from smash.problem.views.numbered import Indexed, cost_of
 from tests.oracle import optimal_cost
 from tests.strategies import instances, plan_options
 

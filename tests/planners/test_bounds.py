@@ -4,7 +4,7 @@ import pytest
 
 from smash.planners.protocol import IncumbentLog, Relay, SolveOptions
 from smash.planners.registry import get_planner
-from smash.problem.suites import read_suite
+from smash.problem.sets.suites import read_suite
 
 
 class Listener:

@@ -4,13 +4,13 @@ import pytest
 from hypothesis import given, settings
 
 from smash.planners.astar import AStarPlanner
-from smash.planners.family.distances import Estimate
 from smash.planners.greedy import GreedyPlanner
 from smash.planners.portfolio import SmashPlanner
 from smash.planners.precedence.planner import PrecedencePlanner
 from smash.planners.protocol import SolveOptions, why_unsupported
 from smash.problem import Costs, Law, State
-from smash.problem.family import is_plain
+from smash.problem.actions.registry import is_plain
+from smash.problem.views.distances import Estimate
 from tests.cheapest import cheapest_plan
 from tests.problem.test_family import scoop
 from tests.strategies import family_instances, family_options

@@ -19,9 +19,9 @@ from smash.planners.flow.warm import motion_of
 from smash.planners.protocol import SolveOptions
 from smash.planners.registry import get_planner
 from smash.problem import Law, OnGoal, PlanOptions, PositionsGoal, StacksGoal, make_instance
-from smash.problem.generators import generate
-from smash.problem.instance_file import read_instance
-from smash.problem.suites import read_suite
+from smash.problem.files.instances import read_instance
+from smash.problem.sets.generators import generate
+from smash.problem.sets.suites import read_suite
 from tests.cheapest import cheapest_plan
 from tests.gadget.plans import walks
 from tests.oracle import optimal_cost

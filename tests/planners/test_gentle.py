@@ -2,9 +2,9 @@
 
 from hypothesis import given, settings
 
-from smash.planners.gentle import gentle_topples
 from smash.planners.greedy import GreedyPlanner
 from smash.planners.protocol import SolveOptions
+from smash.planners.protocol.gentle import gentle_topples
 from smash.problem import Law, Pick, Place, PositionsGoal, Topple, make_instance
 from tests.strategies import instances, plan_options
 

@@ -10,11 +10,11 @@ from smash.planners.layered import LayeredPlanner, planner
 from smash.planners.layered.events import LayeredProblem, build_layered
 from smash.planners.layered.positions import build_positions
 from smash.planners.layered.resting import build_resting
-from smash.planners.milp import OutOfTime
+from smash.planners.milp.arrays import OutOfTime
 from smash.planners.protocol import SolveOptions
 from smash.problem import Law
-from smash.problem.generators import generate
-from smash.problem.suites import read_suite
+from smash.problem.sets.generators import generate
+from smash.problem.sets.suites import read_suite
 from tests.oracle import optimal_cost
 from tests.strategies import instances, plan_options
 

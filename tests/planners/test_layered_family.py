@@ -5,10 +5,9 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 
-from smash.planners import highs
-from smash.planners.demands import demands_of
 from smash.planners.layered import LayeredPlanner
 from smash.planners.layered.family.relaxed import build_relaxed
+from smash.planners.milp.solvers import highs
 from smash.planners.protocol import SolveOptions, why_unsupported
 from smash.problem import (
     Carry,
@@ -22,7 +21,8 @@ from smash.problem import (
     StacksGoal,
     make_instance,
 )
-from smash.problem.instance_file import read_instance
+from smash.problem.files.instances import read_instance
+from smash.problem.views.demands import demands_of
 from tests.cheapest import cheapest_plan
 from tests.strategies import family_instances, family_options
 

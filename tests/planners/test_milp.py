@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from smash.planners import gurobi, highs
-from smash.planners.milp import MilpBuilder
+from smash.planners.milp.arrays import MilpBuilder
+from smash.planners.milp.solvers import gurobi, highs
 from smash.problem import MalformedFile
 
 

@@ -10,9 +10,9 @@ from smash.planners.portfolio import SmashPlanner
 from smash.planners.precedence import PrecedencePlanner
 from smash.planners.protocol import SolveOptions
 from smash.problem import Law, PlanOptions, make_instance
-from smash.problem.generators import generate
 from smash.problem.model import StacksGoal
-from smash.problem.suites import read_suite
+from smash.problem.sets.generators import generate
+from smash.problem.sets.suites import read_suite
 from tests.oracle import optimal_cost
 from tests.strategies import instances, plan_options
 

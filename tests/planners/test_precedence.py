@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from smash.planners.precedence import PrecedencePlanner
 from smash.planners.protocol import SolveOptions
 from smash.problem import Law, OnGoal, PlanOptions, PositionsGoal, StacksGoal, check_plan, make_instance
-from smash.problem.generators import block_names, generate
+from smash.problem.sets.generators import block_names, generate
 from tests.oracle import optimal_cost
 from tests.strategies import instances, plan_options
 

@@ -9,7 +9,7 @@ from smash.cli.import_blocks import command
 from smash.planners.precedence import PrecedencePlanner
 from smash.planners.protocol import SolveOptions
 from smash.problem import MalformedFile, OnGoal, read_instance
-from smash.problem.blocksworld import blocksworld_instance, read_blocksworld
+from smash.problem.blocksworld.problem_file import blocksworld_instance, read_blocksworld
 
 FILES = Path(__file__).parent / "blocksworld"
 

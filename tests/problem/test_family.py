@@ -23,8 +23,8 @@ from smash.problem import (
     check_plan,
     make_instance,
 )
-from smash.problem.instance_file import instance_document, instance_from_document
-from smash.problem.plan_file import plan_document, plan_from_document
+from smash.problem.files.instances import instance_document, instance_from_document
+from smash.problem.files.plans import plan_document, plan_from_document
 from tests.cheapest import cheapest_plan
 
 TRAY = Carrier("tray", ("left", "right"), "left", 2)

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 
 from smash.problem import MalformedFile, read_instance, write_instance
-from smash.problem.documents import convert, replacing
-from smash.problem.instance_file import instance_document, instance_from_document
-from smash.problem.plan_file import plan_document, plan_from_document
-from smash.problem.suites import SUITES, generated_names, made_again, read_suite
+from smash.problem.files.documents import convert, replacing
+from smash.problem.files.instances import instance_document, instance_from_document
+from smash.problem.files.plans import plan_document, plan_from_document
+from smash.problem.sets.suites import SUITES, generated_names, made_again, read_suite
 from tests.strategies import instances
 
 INSTANCE = {

@@ -15,9 +15,9 @@ from smash.planners.astar.engine import Engine, Move
 from smash.planners.astar.search import BEST, NODES, UPPER, Store
 from smash.planners.astar.store import free_memory, grown, make_store, most_nodes
 from smash.planners.astar.task import Setting, make_setting
-from smash.planners.indexed import Indexed, Step, cost_of
-from smash.planners.shorten import shorten
+from smash.planners.greedy.shorten import shorten
 from smash.problem.model import PlanOptions
+from smash.problem.views.numbered import Indexed, Step, cost_of
 
 FIRST_WIDTH = 4
 FIRST_NODES = 1 << 10

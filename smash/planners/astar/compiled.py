@@ -1,7 +1,7 @@
 """The search's functions, interpreted or compiled by numba: one source, and numba imported only where it pays.
 
 The compiled ones are copies whose calls to each other lead to compiled ones. Their machine code is cached
-beside the source, so that it is made once a machine (`python -m smash.planners.warm`).
+beside the source, so that it is made once a machine (`python -m smash.planners.astar.warm`).
 """
 
 from __future__ import annotations

@@ -9,8 +9,8 @@ from smash.planners.astar.compiled import Code, compiled_code
 from smash.planners.astar.engine import StoreEngine
 from smash.planners.astar.store import filled
 from smash.planners.astar.task import make_setting
-from smash.planners.indexed import Indexed
 from smash.problem.model import Instance, PlanOptions, StacksGoal
+from smash.problem.views.numbered import Indexed
 
 
 class Compiler:

@@ -11,8 +11,8 @@ from smash.planners.astar.engine import StoreEngine
 from smash.planners.astar.search import BEST, EXPANDED, FLOOR, FULL, PROVEN, UPPER
 from smash.planners.astar.store import free_memory, grown, most_nodes
 from smash.planners.astar.task import make_setting
-from smash.planners.indexed import Indexed, Step
 from smash.problem.model import PlanOptions
+from smash.problem.views.numbered import Indexed, Step
 
 INTERPRETED_NODES = 1500
 """Nodes filed before numba is imported: smaller searches end sooner without it."""

@@ -9,7 +9,7 @@ from smash.planners.astar.search import BEST, Store
 from smash.planners.astar.store import filled, make_store
 from smash.planners.astar.task import Ints, Setting
 from smash.planners.astar.walk import Walk
-from smash.planners.indexed import Indexed, Step
+from smash.problem.views.numbered import Indexed, Step
 
 WORK = {False: 3_000, True: 200_000}
 """What a share of expansions is worth, in blocks squared times locations: some milliseconds between two looks at

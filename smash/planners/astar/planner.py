@@ -6,12 +6,12 @@ from time import perf_counter
 from typing import Any, ClassVar
 
 from smash.planners.astar.driver import StateSearch
-from smash.planners.family.solve import offer_twin, search_family
+from smash.planners.astar.law_solve import offer_twin, search_family
 from smash.planners.greedy import greedy_steps
-from smash.planners.indexed import Indexed
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
-from smash.problem.family import FAMILY, is_plain
+from smash.problem.actions.registry import FAMILY, is_plain
 from smash.problem.model import Instance
+from smash.problem.views.numbered import Indexed
 
 
 class AStarPlanner(BasePlanner):

@@ -12,9 +12,9 @@ from __future__ import annotations
 from collections.abc import MutableSequence
 from typing import NamedTuple
 
-from smash.planners.indexed import Indexed
-from smash.planners.targets import Piles, goal_piles, towers_of
 from smash.problem.model import PlanOptions
+from smash.problem.views.numbered import Indexed
+from smash.problem.views.targets import Piles, goal_piles, towers_of
 
 Ints = MutableSequence[int]
 MOST_CODES = 256

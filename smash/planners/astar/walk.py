@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from smash.planners.astar.task import TOPPLED
-from smash.planners.indexed import ON_TABLE, TOPPLE, Indexed, Step
+from smash.problem.views.numbered import ON_TABLE, TOPPLE, Indexed, Step
 
 
 class Walk:

@@ -9,7 +9,7 @@ import numpy as np
 from smash.gadget import NodeKind
 from smash.planners.flow.reach import Reach, reach_of
 from smash.planners.flow.scope import Scope
-from smash.planners.milp import Ints
+from smash.planners.milp.arrays import Ints
 
 WAIT = -1
 """The edge number of an arc on which a pebble stays where it is."""

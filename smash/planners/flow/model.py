@@ -21,7 +21,7 @@ from smash.gadget.motion import PebbleMotion
 from smash.planners.flow.arcs import WAIT, Arcs, arcs_of
 from smash.planners.flow.reach import Reach
 from smash.planners.flow.scope import Scope
-from smash.planners.milp import Floats, Ints, Milp, MilpBuilder
+from smash.planners.milp.arrays import Floats, Ints, Milp, MilpBuilder
 from smash.problem.model import OnGoal
 
 

@@ -13,7 +13,7 @@ from smash.problem.model import Action, Instance, State
 from smash.problem.rules import Law
 
 if TYPE_CHECKING:
-    from smash.planners.milp import Milp
+    from smash.planners.milp.arrays import Milp
 
 MARGIN = 0.04
 """Share of the budget that is left for HiGHS to notice its time limit and for reading the last solution."""

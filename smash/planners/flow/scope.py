@@ -23,8 +23,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from smash.gadget import EdgeKind, Gadget, NodeKind, gadget_of
-from smash.gadget.family import parts_of
 from smash.gadget.motion import settled
+from smash.gadget.parts.registry import parts_of
 from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal, State
 
 

@@ -13,13 +13,13 @@ from time import perf_counter
 from typing import Any
 
 from smash.gadget.decode import decode
-from smash.planners import highs
 from smash.planners.flow.arcs import count_arcs, reaches_of
 from smash.planners.flow.horizon import step_bound
 from smash.planners.flow.model import FlowModel, build
 from smash.planners.flow.scope import scope_of
 from smash.planners.flow.warm import motion_of
-from smash.planners.milp import Floats, MilpResult
+from smash.planners.milp.arrays import Floats, MilpResult
+from smash.planners.milp.solvers import highs
 from smash.planners.protocol import IncumbentLog, SolveOptions
 from smash.problem.errors import IllegalAction, SmashError
 from smash.problem.model import Instance

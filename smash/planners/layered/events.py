@@ -20,9 +20,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from smash.planners.demands import Demands, demands_of
-from smash.planners.milp import Floats, Ints, Milp, MilpBuilder
+from smash.planners.milp.arrays import Floats, Ints, Milp, MilpBuilder
 from smash.problem.model import Instance, PlanOptions
+from smash.problem.views.demands import Demands, demands_of
 
 TRANSFER_COST = 2
 TOPPLE_COST = 1

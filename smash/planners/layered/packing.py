@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from smash.planners.layered.events import Event, LayeredProblem
+from smash.problem.actions.topple import Topple
 from smash.problem.model import TABLE, Action, Instance, Pick, Place, State
-from smash.problem.topple import Topple
 
 NEVER = 1 << 30
 

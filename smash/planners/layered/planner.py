@@ -10,12 +10,12 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
-from smash.problem.family import is_plain
+from smash.problem.actions.registry import is_plain
 from smash.problem.model import Action, Instance
 
 if TYPE_CHECKING:
     from smash.planners.layered.events import LayeredProblem
-    from smash.planners.milp import Floats, Milp, MilpResult, MilpStatus
+    from smash.planners.milp.arrays import Floats, Milp, MilpResult, MilpStatus
 
 Model = TypeVar("Model")
 
@@ -48,8 +48,8 @@ class LayeredPlanner(BasePlanner):
         import highspy  # noqa: F401
         import scipy.sparse  # noqa: F401
 
-        from smash.planners import highs  # noqa: F401
         from smash.planners.layered import events, packing  # noqa: F401
+        from smash.planners.milp.solvers import highs  # noqa: F401
 
     def solve(
         self,
@@ -125,7 +125,7 @@ class _Solve:
 
     def _built(self, horizon: int, build: Callable[[float], Model]) -> Model | None:
         """Return what `build` makes, or None where it takes more than its share of the time left."""
-        from smash.planners.milp import OutOfTime
+        from smash.planners.milp.arrays import OutOfTime
 
         now = perf_counter()
         try:
@@ -190,7 +190,7 @@ class _Solve:
         self, horizon: int, buffers: str, model: Milp, decode: Callable[[Floats], Sequence[Action] | None]
     ) -> MilpResult:
         """Solve a stage's model until its end, the deadline, or a plan that meets the bound."""
-        from smash.planners import highs
+        from smash.planners.milp.solvers import highs
 
         def found(vector: Floats) -> None:
             actions = decode(vector)

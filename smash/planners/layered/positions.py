@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from smash.planners.demands import Demands
 from smash.planners.layered.events import TOPPLE_COST, TRANSFER_COST
-from smash.planners.milp import Floats, Ints, Milp, MilpBuilder
+from smash.planners.milp.arrays import Floats, Ints, Milp, MilpBuilder
+from smash.problem.actions.topple import Topple
 from smash.problem.model import TABLE, Action, Instance, OnGoal, Pick, Place, PlanOptions, State
-from smash.problem.topple import Topple
+from smash.problem.views.demands import Demands
 
 
 @dataclass(frozen=True, slots=True)

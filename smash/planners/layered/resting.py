@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from smash.planners.layered.events import Event, EventsBuilder, LayeredModel, LayeredProblem, read_events
-from smash.planners.milp import Floats, Ints
+from smash.planners.milp.arrays import Floats, Ints
 from smash.problem.model import Instance, PlanOptions
 
 LEVELS = 3

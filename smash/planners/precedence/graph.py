@@ -17,8 +17,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from smash.planners.demands import Demands, demands_of
 from smash.problem.model import Instance, PlanOptions
+from smash.problem.views.demands import Demands, demands_of
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

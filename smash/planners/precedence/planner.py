@@ -75,7 +75,7 @@ class PrecedencePlanner(BasePlanner):
 
 def _greedy_plans(instance: Instance, options: SolveOptions, seconds: float) -> Iterator[Sequence[Action]]:
     from smash.planners.greedy import greedy_steps
-    from smash.planners.indexed import Indexed
+    from smash.problem.views.numbered import Indexed
 
     problem = Indexed.of(instance)
     for steps in greedy_steps(problem, options, perf_counter() + seconds, options.seed):

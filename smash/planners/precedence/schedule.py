@@ -13,10 +13,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
 
-from smash.planners.demands import Demands, Pile
 from smash.planners.precedence.graph import Choice
+from smash.problem.actions.topple import Topple
 from smash.problem.model import TABLE, Action, Instance, OnGoal, Pick, Place
-from smash.problem.topple import Topple
+from smash.problem.views.demands import Demands, Pile
 
 Event = tuple[str, str]
 Segments = dict[str, list[tuple[int, int]]]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from smash.planners.layered.family.places import Places
-from smash.planners.milp import Ints, MilpBuilder
+from smash.planners.milp.arrays import Ints, MilpBuilder
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,13 +8,13 @@ import numpy as np
 
 from smash.planners.layered.family.model import FamilyModel
 from smash.planners.layered.family.relaxed import RelaxedModel
-from smash.planners.milp import Floats, Ints
-from smash.problem.carry import Carry
+from smash.planners.milp.arrays import Floats, Ints
+from smash.problem.actions.carry import Carry
+from smash.problem.actions.lift import Lift
+from smash.problem.actions.topple import Topple
 from smash.problem.errors import IllegalAction
-from smash.problem.lift import Lift
 from smash.problem.model import Action, Instance, OnGoal, Pick, Place, PlanOptions, State
 from smash.problem.rules import Law
-from smash.problem.topple import Topple
 
 
 def read_family(

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from smash.planners.demands import Demands
 from smash.planners.layered.family.carriers import CarrierColumns, add_carriers
 from smash.planners.layered.family.places import Places
-from smash.planners.milp import Ints, Milp, MilpBuilder
+from smash.planners.milp.arrays import Ints, Milp, MilpBuilder
 from smash.problem.model import Instance, OnGoal, PlanOptions
+from smash.problem.views.demands import Demands
 
 
 @dataclass(frozen=True, slots=True)

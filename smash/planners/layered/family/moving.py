@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from smash.planners.demands import Demands
 from smash.planners.layered.family.places import NO_EDGE, Places
-from smash.planners.milp import Ints
+from smash.planners.milp.arrays import Ints
 from smash.problem.model import Instance, OnGoal, PlanOptions
+from smash.problem.views.demands import Demands
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from smash.planners.milp import Ints
-from smash.problem.family import kinds_of
+from smash.planners.milp.arrays import Ints
+from smash.problem.actions.registry import kinds_of
 from smash.problem.model import TABLE, Carrier, Instance, PlanOptions
 
 NO_EDGE = -1

@@ -17,13 +17,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from smash.planners.demands import Demands
 from smash.planners.layered.family.carriers import CarrierColumns, add_carriers
 from smash.planners.layered.family.moving import Moving
 from smash.planners.layered.family.places import NO_EDGE, Places
 from smash.planners.layered.family.resting_order import OrderColumns, add_resting_order
-from smash.planners.milp import Ints, Milp, MilpBuilder
+from smash.planners.milp.arrays import Ints, Milp, MilpBuilder
 from smash.problem.model import Instance, PlanOptions
+from smash.problem.views.demands import Demands
 
 STARTS_TAKEN, REST_TAKEN = 0, 1
 """Kinds of topples and lifts: those that take blocks which wait where they started, those of resting blocks alone."""

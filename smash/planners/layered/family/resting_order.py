@@ -10,7 +10,7 @@ import itertools
 from dataclasses import dataclass
 
 from smash.planners.layered.family.moving import Moving
-from smash.planners.milp import Ints, MilpBuilder
+from smash.planners.milp.arrays import Ints, MilpBuilder
 
 
 @dataclass(frozen=True, slots=True)

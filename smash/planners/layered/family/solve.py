@@ -9,17 +9,17 @@ from math import ceil, floor, isfinite
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from smash.planners.demands import Demands, demands_of
 from smash.planners.layered.family.moving import Moving
 from smash.planners.layered.family.places import Places
 from smash.planners.layered.family.unordered import Unordered
 from smash.planners.protocol import IncumbentLog, OnIncumbent, PlanResult, SolveOptions
 from smash.problem.model import Action, Instance
+from smash.problem.views.demands import Demands, demands_of
 
 if TYPE_CHECKING:
     from smash.planners.layered.family.model import FamilyModel
     from smash.planners.layered.family.relaxed import RelaxedModel
-    from smash.planners.milp import Floats, Milp, MilpResult
+    from smash.planners.milp.arrays import Floats, Milp, MilpResult
 
 SPARE_SECONDS = 0.05
 """Kept back from the budget for the solver to end and the last plan to be checked."""
@@ -139,7 +139,7 @@ class FamilySolve:
 
     def _twin(self) -> None:
         """Take first plans from the three-node model of the plain twin, for a share of the time left."""
-        from smash.planners.family.twin import from_twin, plain_twin
+        from smash.problem.views.twin import from_twin, plain_twin
 
         def found(_seconds: float, _cost: int, actions: Sequence[Action]) -> None:
             self.log.offer(tuple(from_twin(self.instance, actions)), "milp")
@@ -211,8 +211,8 @@ class FamilySolve:
 
     def _program(self, name: str, build: Callable[[float], Milp]) -> MilpResult | None:
         """Solve a program without order, in a share of the time left; None where it took too long to build."""
-        from smash.planners import highs
-        from smash.planners.milp import OutOfTime
+        from smash.planners.milp.arrays import OutOfTime
+        from smash.planners.milp.solvers import highs
 
         seconds = FLOW_SHARE * (self.deadline - perf_counter())
         try:
@@ -259,8 +259,8 @@ class FamilySolve:
         solver: dict[str, str] | None = None,
     ) -> MilpResult | None:
         """Build and solve a model whose every plan is cheaper than the best one; None where building took too long."""
-        from smash.planners import highs
-        from smash.planners.milp import OutOfTime
+        from smash.planners.milp.arrays import OutOfTime
+        from smash.planners.milp.solvers import highs
 
         now = perf_counter()
         until = now + BUILD_SHARE * (self.deadline - now)

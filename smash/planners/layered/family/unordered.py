@@ -15,7 +15,7 @@ import numpy as np
 
 from smash.planners.layered.family.moving import Moving
 from smash.planners.layered.family.places import NO_EDGE
-from smash.planners.milp import Ints, Milp, MilpBuilder
+from smash.planners.milp.arrays import Ints, Milp, MilpBuilder
 from smash.problem.model import Instance, PlanOptions
 
 COUNT_WEIGHT = -1.0

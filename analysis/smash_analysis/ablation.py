@@ -1,0 +1,58 @@
+"""`python -m smash_analysis.ablation RESULTS`: the budget x buffer heatmaps of the paper's task-planning ablation."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pandas as pd
+
+from smash_analysis import command
+from smash_analysis.charts.heatmaps import planner_figure
+from smash_analysis.records import read_records, runs_table
+from smash_analysis.statistics.conditions import conditions
+from smash_analysis.statistics.findings import findings
+from smash_analysis.tables.cells import matched_cells, variant_cells
+from smash_analysis.tables.readings import cutoff_check, readings
+from smash_analysis.tables.writing import ablation_table, markdown
+
+
+def make(results: Path, out: Path) -> list[Path]:
+    """Make every picture and table of the ablation from the records in `results`; return the files.
+
+    Raises:
+        NoRecords: where there are none.
+    """
+    records = read_records(results)
+    out.mkdir(parents=True, exist_ok=True)
+    read = readings(records)
+    cells, matched, check = variant_cells(read), matched_cells(read), cutoff_check(records)
+    runs = runs_table(records)
+    table = ablation_table(runs[runs["kind"] != "cutoff"])
+    files = [out / name for name in ("cells.csv", "matched.csv", "cutoffs.csv", "table.csv", "table.md", "findings.md")]
+    for file, frame in zip(files, (cells, matched, check, table), strict=False):
+        frame.to_csv(file, index=False)
+    files[4].write_text(markdown(table), encoding="utf-8")
+    files[5].write_text(findings(cells, matched, check) + conditions(records), encoding="utf-8")
+    return files + _pictures(cells, matched, out)
+
+
+def _pictures(cells: pd.DataFrame, matched: pd.DataFrame, out: Path) -> list[Path]:
+    files = []
+    for (label, suite), part in cells.groupby(["label", "suite"]):
+        pairs = matched[(matched["label"] == label) & (matched["suite"] == suite)]
+        figure = planner_figure(str(label), str(suite), part, pairs)
+        name = re.sub(r"[^A-Za-z0-9._-]+", "-", f"heatmap-{label}-{suite}").strip("-")
+        for ending in ("png", "pdf"):
+            files.append(out / f"{name}.{ending}")
+            figure.savefig(files[-1], dpi=200)
+    return files
+
+
+def main() -> None:
+    """Make the ablation's pictures and say where they are."""
+    command.run("ablation", __doc__, make, "ablation", shown="findings.md")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""Charts: small panels, curves, heatmaps."""

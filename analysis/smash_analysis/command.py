@@ -1,0 +1,36 @@
+"""The command line that the modules of tables and figures share: `python -m analysis.NAME RESULTS [--out DIR]`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from smash_analysis.records import NoRecords
+
+
+def run(
+    name: str, about: str | None, make: Callable[[Path, Path], list[Path]], folder: str = "", shown: str = ""
+) -> None:
+    """Read RESULTS and --out from the command line, make the files and say where they are; without records, say so.
+
+    Args:
+        name: of the module.
+        about: what `--help` says.
+        make: writes the files made of the records in a directory to another; returns them.
+        folder: where below RESULTS they go if nothing else is said.
+        shown: the file of them that is printed too.
+    """
+    parser = argparse.ArgumentParser(prog=f"python -m analysis.{name}", description=about)
+    parser.add_argument("results", type=Path, help="directory with the records (.jsonl)")
+    parser.add_argument("--out", type=Path, help=f"default: {Path('RESULTS', folder)}")
+    arguments = parser.parse_args()
+    out = arguments.out or arguments.results / folder
+    try:
+        files = make(arguments.results, out)
+    except NoRecords as error:
+        sys.exit(f"analysis: {error}")
+    if shown:
+        print((out / shown).read_text(encoding="utf-8"))
+    print("\n".join(str(file) for file in files))

@@ -1,0 +1,176 @@
+"""A comparison of planners on the same problems: coverage, times, costs, gaps, proofs, memory, and every failure.
+
+Costs of different planners are means over different subsets as soon as their coverage differs. So each is given
+twice: over all that the planner solved, and over the problems that every planner with a plan of that variant solved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from smash_analysis import command
+from smash_analysis.charts.curves import anytime_chart, coverage_chart
+from smash_analysis.metrics import PREFIX, metric_names
+from smash_analysis.records import read_records, runs_table
+from smash_analysis.statistics.conditions import conditions
+from smash_analysis.tables.writing import markdown, mean_std, median_iqr, share
+
+PROBLEM = ["instance_hash", "variant"]
+GROUP = ["suite", "blocks", "buffers", "variant"]
+
+
+def comparable(records: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the runs at the largest budget of each planner and suite, real cut-offs left out."""
+    kept = [record for record in records if record["kind"] != "cutoff"]
+    largest: dict[tuple[str, str], float] = {}
+    for record in kept:
+        who = (record["label"], record["suite"])
+        largest[who] = max(largest.get(who, 0.0), record["budget"])
+    return [record for record in kept if record["budget"] == largest[record["label"], record["suite"]]]
+
+
+def optima(records: list[dict[str, Any]]) -> tuple[dict[tuple[str, str], int], list[str]]:
+    """Return the proven optimal cost of each problem (instance hash, variant), and every contradiction in words.
+
+    A contradiction: two planners prove different optima, or one has a legal plan below a proven optimum or bound.
+    """
+    proven: dict[tuple[str, str], int] = {}
+    witness: dict[tuple[str, str], str] = {}
+    wrong = []
+    accepted = [record for record in records if record["outcome"] != "refused"]
+    for record in accepted:
+        problem = (record["instance_hash"], record["variant"])
+        if record["status"] == "optimal" and record["cost"] is not None:
+            known = proven.setdefault(problem, record["cost"])
+            first = witness.setdefault(problem, record["label"])
+            if known != record["cost"]:
+                wrong.append(f"{_name(record)}: {first} proves {known}, {record['label']} proves {record['cost']}")
+                proven[problem] = min(known, record["cost"])
+    solved = {(r["instance_hash"], r["variant"]): r["label"] for r in accepted if r["cost"] is not None}
+    bounds: dict[tuple[str, str], tuple[int, str]] = {}
+    for record in accepted:
+        problem = (record["instance_hash"], record["variant"])
+        if record["lower_bound"] is not None:
+            bounds[problem] = max(bounds.get(problem, (0, "")), (record["lower_bound"], record["label"]))
+    for record in accepted:
+        bound, who = bounds.get((record["instance_hash"], record["variant"]), (0, ""))
+        if record["cost"] is not None and record["cost"] < bound:
+            wrong.append(f"{_name(record)}: {who} proves at least {bound}, {record['label']} has {record['cost']}")
+        if record["status"] == "infeasible" and (record["instance_hash"], record["variant"]) in solved:
+            other = solved[record["instance_hash"], record["variant"]]
+            wrong.append(f"{_name(record)}: {record['label']} proves it infeasible, {other} has a plan")
+    return proven, sorted(set(wrong))
+
+
+def _name(record: dict[str, Any]) -> str:
+    return f"{record['instance']} B={record['buffers']} {record['variant']}"
+
+
+def compared(records: list[dict[str, Any]]) -> pd.DataFrame:
+    """Return one row a run with `gap` (cost over the proven optimum, a share; NaN where none is proven) and `common`.
+
+    `common` holds where every planner that solved anything of this suite and variant solved this problem.
+    """
+    runs = runs_table(records)
+    proven, _ = optima(records)
+    best = [proven.get(problem) for problem in zip(runs["instance_hash"], runs["variant"], strict=True)]
+    runs["optimum"] = pd.Series(best, index=runs.index, dtype=float)
+    gap = runs["cost"] / runs["optimum"].where(runs["optimum"] > 0) - 1
+    runs["gap"] = gap.mask((runs["optimum"] == 0) & (runs["cost"] == 0), 0.0)
+    able = runs.groupby(["suite", "variant", "label"])["solved"].transform("any")
+    settled = runs["solved"] | ~able
+    runs["common"] = settled.groupby([runs[column] for column in [*PROBLEM, "suite"]]).transform("all") & runs["solved"]
+    return runs
+
+
+def comparison_table(runs: pd.DataFrame, group: list[str] = GROUP) -> pd.DataFrame:
+    """Return the table: one row per group and planner, in the order in which the planners were given."""
+    rows = []
+    for setting, part in runs.groupby(group, sort=True):
+        for label, mine in part.groupby("label", sort=False):
+            rows.append({**dict(zip(group, setting, strict=True)), "planner": label, **_row(mine)})
+    return pd.DataFrame(rows)
+
+
+def _row(mine: pd.DataFrame) -> dict[str, object]:
+    shared = mine[mine["common"]]
+    known = mine["gap"].dropna()
+    return {
+        "coverage": f"{int(mine['solved'].sum())}/{len(mine)}",
+        "coverage [95 %]": share(int(mine["solved"].sum()), len(mine)),
+        "proven": f"{int(mine['proven'].sum())}/{len(mine)}",
+        "first plan [s]": median_iqr(mine["first_seconds"]),
+        "best plan [s]": median_iqr(mine["best_seconds"]),
+        "cost, solved": mean_std(mine["cost"]),
+        "cost, common": f"{mean_std(shared['cost'])} (n={len(shared)})",
+        "median cost": median_iqr(mine["cost"], 1),
+        "gap to optimum": f"{100 * known.mean():.1f} % (n={len(known)})" if len(known) else "–",
+        **{name: median_iqr(mine[mine["solved"]][PREFIX + name]) for name in metric_names(mine)},
+        "memory [MiB]": f"{mine['memory_mib'].median():.0f}" if mine["memory_mib"].notna().any() else "–",
+    }
+
+
+def outcome_table(runs: pd.DataFrame) -> pd.DataFrame:
+    """Return how often each planner's runs ended how, one column an outcome."""
+    counts = runs.groupby(["label", "variant", "outcome"], sort=False).size().unstack(fill_value=0)
+    return counts.reset_index().rename(columns={"label": "planner"}).rename_axis(None, axis="columns")
+
+
+def failure_table(runs: pd.DataFrame) -> pd.DataFrame:
+    """Return the failures with their reasons, counted: whatever is no plan and no proof that there is none."""
+    failed = runs[~runs["solved"] & (runs["status"] != "infeasible") | runs["outcome"].isin(["crashed", "memory"])]
+    reasons = failed.assign(reason=failed["reason"].where(failed["reason"] != "", "no plan by the budget"))
+    counts = reasons.groupby(["label", "variant", "outcome", "reason"], sort=False).size()
+    return counts.rename("runs").reset_index().rename(columns={"label": "planner"})
+
+
+def make(results: Path, out: Path, keys: Collection[str] | None = None) -> list[Path]:
+    """Make the comparison's tables and curves from the records in `results`; return the files.
+
+    Args:
+        results: the directory of the records.
+        out: where the files go.
+        keys: the runs that are meant (None: all); a directory may hold records of other comparisons too.
+
+    Raises:
+        NoRecords: where there are none.
+    """
+    records = comparable(read_records(results, keys))
+    out.mkdir(parents=True, exist_ok=True)
+    runs = compared(records)
+    _, wrong = optima(records)
+    table, outcomes, failures = comparison_table(runs), outcome_table(runs), failure_table(runs)
+    parts = {"comparison": table, "outcomes": outcomes, "failures": failures}
+    files = []
+    for name, part in parts.items():
+        files.append(out / f"{name}.csv")
+        part.to_csv(files[-1], index=False)
+    page = ["# Comparison", "", markdown(table), "## How the runs ended", "", markdown(outcomes)]
+    page += ["## Failures and their reasons", "", markdown(failures) if len(failures) else "None.\n"]
+    page += [
+        "## Contradictions between planners",
+        "",
+        "\n".join(f"- {line}" for line in wrong) or "None.",
+        conditions(records),
+    ]
+    files.append(out / "comparison.md")
+    files[-1].write_text("\n".join(page), encoding="utf-8")
+    for name, draw in (("anytime", anytime_chart), ("coverage", coverage_chart)):
+        figure = draw(records).figure()
+        for ending in ("png", "pdf"):
+            files.append(out / f"{name}.{ending}")
+            figure.savefig(files[-1], dpi=200)
+    return files
+
+
+def main() -> None:
+    """Make the comparison's tables and curves and say where they are."""
+    command.run("comparison", __doc__, make, "comparison", shown="comparison.md")
+
+
+if __name__ == "__main__":
+    main()

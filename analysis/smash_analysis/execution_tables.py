@@ -1,0 +1,221 @@
+"""`python -m smash_analysis.execution_tables RESULTS`: the paper's Tables I and II, our figures beside them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from smash_analysis import command
+from smash_analysis.records import NoRecords, read_lines
+from smash_analysis.statistics.intervals import paired, success_rate
+from smash_analysis.tables.episodes import EPISODE_FORMAT, EPISODES, episodes_table
+from smash_analysis.tables.paper_tables import METRICS, PAPER, SIZES, Metric
+from smash_analysis.tables.writing import RATES, SPREADS, latex, markdown, mean_std, rate_cell, with_spread
+
+LEGEND = (
+    f"Cells: mean ± std (median) over instances; the paper: mean ± std. {RATES} "
+    "Number of actions, initial TP time and depth are of all plans, whether or not they were carried out to the end; "
+    "the other times are over successful episodes alone. Times of motion planning (MP) are by the planning thread's "
+    "clock, so that other work on the machine does not count; those of task planning (TP) are by the wall's clock, and "
+    "so is replanning: the planner's time during an episode, which execution (simulated) does not hold."
+)
+BENCHMARKS = {"single": "Table I: single-goal rearrangement", "multi": "Table II: multi-goal rearrangement"}
+WITHOUT = "no-topple"
+VARIANTS = {"topple": "w/ topple", "max-topple-4": "w/ topple ≤ 4", WITHOUT: "w/o topple"}
+"""Plan variants in the order of the columns, and what they are called there."""
+
+
+def read_episodes(results: Path) -> pd.DataFrame:
+    """Return `told_episodes` of `RESULTS/episodes.jsonl`.
+
+    Raises:
+        NoRecords: where there are none.
+    """
+    records = read_lines(results / EPISODES, EPISODE_FORMAT)
+    if not records:
+        raise NoRecords(f"{results / EPISODES}: no finished episode")
+    return told_episodes(records)
+
+
+def told_episodes(records: list[dict[str, Any]]) -> pd.DataFrame:
+    """Return `episodes_table` with `benchmark` (single or multi), and a failure for every loss.
+
+    An episode whose process ended without one has failure `crashed`, and the process's problem for a reason.
+    """
+    episodes = episodes_table(records)
+    lost = episodes["failure"].isna() & ~episodes["success"]
+    return episodes.assign(
+        benchmark=episodes["suite"].str.split("-").str[0],
+        failure=episodes["failure"].mask(lost, "crashed"),
+        failure_reason=episodes["failure_reason"].mask(lost, episodes["problem"]),
+    )
+
+
+def metric_table(episodes: pd.DataFrame, benchmark: str) -> pd.DataFrame:
+    """Return the table of one benchmark: a row per metric and source (ours by planner and policy, the paper).
+
+    A column per number of blocks and variant. What tells of plans is over all of them, times are over successful
+    episodes; each instance counts once (the mean over its seeds).
+    """
+    part = episodes[episodes["benchmark"] == benchmark]
+    variants = [variant for variant in VARIANTS if variant in set(part["variant"])]
+    rows: list[dict[str, str]] = []
+    for metric in METRICS:
+        if benchmark not in metric.benchmarks:
+            continue
+        figures = PAPER[benchmark].get(metric.name, {})
+        row = {"metric": metric.title, "source": "paper"}
+        for index, size in enumerate(SIZES):
+            row |= {_column(size, variant): figures.get(variant, ("–",) * 3)[index] for variant in variants}
+        rows.append(row)
+        for (label, policy), group in part.groupby(["label", "policy"], sort=True):
+            row = {"metric": metric.title, "source": f"{label}, {policy}"}
+            for size in SIZES:
+                for variant in variants:
+                    chosen = group[(group["blocks"] == size) & (group["variant"] == variant)]
+                    row[_column(size, variant)] = _cell(chosen, metric)
+            rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def _column(size: int, variant: str) -> str:
+    return f"{size} blocks {VARIANTS[variant]}"
+
+
+def _cell(group: pd.DataFrame, metric: Metric) -> str:
+    if group.empty:
+        return "–"
+    if metric.name == "success":
+        return rate_cell(success_rate(group, "success"), "episodes")
+    values = group if metric.of_plan else group[group["success"]]
+    each = values.groupby("instance")[metric.column].mean().dropna()
+    if each.empty:
+        return "–"
+    return f"{mean_std(each, metric.digits)} ({each.median():.{metric.digits}f})"
+
+
+def paired_table(episodes: pd.DataFrame) -> pd.DataFrame:
+    """Return execution time saved by topple: paired by instance, seed, planner and policy, both successful.
+
+    The mean times of replanning on the same pairs stand beside it: execution is simulated and does not hold them.
+    """
+    setting, problem = ["benchmark", "blocks", "label", "policy"], ["instance", "seed"]
+    columns = ["execution_seconds", "task_seconds"]
+    done = episodes.assign(solved=episodes["success"])[[*setting, *problem, "variant", "solved", *columns]]
+    without = dict(list(done[done["variant"] == WITHOUT].groupby(setting)))
+    rows = []
+    for (variant, *key), part in done[done["variant"] != WITHOUT].groupby(["variant", *setting]):
+        if tuple(key) not in without:
+            continue
+        pair = paired(without[tuple(key)], part, problem, ["instance"], "execution_seconds")
+        replanning = paired(without[tuple(key)], part, problem, ["instance"], "task_seconds")
+        benchmark, blocks, label, policy = key
+        rows.append(
+            {
+                "benchmark": benchmark,
+                "blocks": blocks,
+                "planner": label,
+                "variant": variant,
+                "policy": policy,
+                "success without": rate_cell(pair.left_rate, "episodes"),
+                "success with": rate_cell(pair.right_rate, "episodes"),
+                "instances": pair.units,
+                "without [s]": f"{pair.left_mean:.1f}" if pair.units else "–",
+                "saved [s], mean [95 %] (range)": with_spread(pair.mean, pair.interval, pair.units),
+                "saved [%]": f"{100 * (1 - 1 / pair.ratio):.0f}" if pair.ratio > 0 else "–",
+                "replanning without, with [s]": f"{replanning.left_mean:.2f}, {replanning.right_mean:.2f}"
+                if replanning.units
+                else "–",
+                "the paper [%]": _paper_saved(str(benchmark), int(str(blocks))),
+                "faster, equal, slower": ", ".join(map(str, pair.tally)),
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def _paper_saved(benchmark: str, blocks: int) -> str:
+    """The share of the paper's mean execution time that topple saved there [%]."""
+    if benchmark not in PAPER or blocks not in SIZES:
+        return "–"
+    figures, column = PAPER[benchmark]["execution"], SIZES.index(blocks)
+    with_, without = (float(figures[variant][column].split()[0]) for variant in ("topple", WITHOUT))
+    return f"{100 * (1 - with_ / without):.0f}"
+
+
+def slower_table(episodes: pd.DataFrame) -> pd.DataFrame:
+    """Return the pairs in which topple took longer, worst first, with what each side planned and carried out."""
+    keys = ["label", "policy", "instance", "seed"]
+    columns = ["variant", *keys, "cost", "actions_executed", "replans", "execution_seconds"]
+    done = episodes[episodes["success"]][columns]
+    sides = done[done["variant"] != WITHOUT].merge(
+        done[done["variant"] == WITHOUT].drop(columns="variant"), on=keys, suffixes=("", "_without")
+    )
+    sides["lost"] = sides["execution_seconds"] - sides["execution_seconds_without"]
+    worst = sides[sides["lost"] > 0].sort_values("lost", ascending=False)
+    return pd.DataFrame(
+        {
+            **{column: worst[column] for column in ("instance", "seed", "label", "variant", "policy")},
+            "lost [s]": worst["lost"].map("{:.1f}".format),
+            "with [s]": worst["execution_seconds"].map("{:.1f}".format),
+            "without [s]": worst["execution_seconds_without"].map("{:.1f}".format),
+            "planned with, without": _both(worst, "cost"),
+            "carried out": _both(worst, "actions_executed"),
+            "replans": _both(worst, "replans"),
+        }
+    )
+
+
+def _both(sides: pd.DataFrame, column: str) -> list[str]:
+    return [f"{a}, {b}" for a, b in zip(sides[column], sides[f"{column}_without"], strict=True)]
+
+
+def failure_table(episodes: pd.DataFrame) -> pd.DataFrame:
+    """Return every failure: how often, by whom, and one example."""
+    failed = episodes[~episodes["success"]]
+    columns = ["suite", "label", "variant", "policy", "failure"]
+    rows = []
+    for key, group in failed.groupby(columns):
+        first = group.iloc[0]
+        example = f"{first['instance']} seed {first['seed']}: {first['failure_reason']}"
+        rows.append({**dict(zip(columns, key, strict=True)), "episodes": len(group), "example": example})
+    return pd.DataFrame(rows, columns=[*columns, "episodes", "example"])
+
+
+def make(results: Path, out: Path) -> list[Path]:
+    """Write the tables as Markdown and LaTeX, and the episodes as CSV; return the files.
+
+    Raises:
+        NoRecords: where there are no episodes.
+    """
+    episodes = read_episodes(results)
+    out.mkdir(parents=True, exist_ok=True)
+    count = f"{len(episodes)} episodes, {int(episodes['success'].sum())} successful."
+    parts = ["# Execution\n", f"{count} {LEGEND}\n"]
+    files = [out / "episodes.csv", out / "tables.md"]
+    episodes.to_csv(files[0], index=False)
+    for benchmark, title in BENCHMARKS.items():
+        if not (episodes["benchmark"] == benchmark).any():
+            continue
+        table = metric_table(episodes, benchmark)
+        parts += [f"## {title}\n", markdown(table)]
+        files.append(out / f"table-{benchmark}.tex")
+        files[-1].write_text(latex(table, title, f"tab:{benchmark}"), encoding="utf-8")
+    paired, failed = paired_table(episodes), failure_table(episodes)
+    if len(paired):
+        parts += ["## Execution time saved by topple, paired by instance\n", f"{SPREADS}\n", markdown(paired)]
+    slower = slower_table(episodes)
+    parts += [f"## Where topple took longer: {len(slower)} pairs\n", markdown(slower)] if len(slower) else []
+    parts += ["## Failures\n", markdown(failed) if len(failed) else "None.\n"]
+    files[1].write_text("\n".join(parts), encoding="utf-8")
+    return files
+
+
+def main() -> None:
+    """Make the tables and say where they are."""
+    command.run("execution_tables", __doc__, make, "tables")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,84 @@
+"""Tidy tables from records, as Parquet and CSV (`docs/records.md`).
+
+One row a run, one an incumbent, one a step of a plan; where plans were carried out, one an episode, one an action.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from smash_analysis.records import incumbents_table, read_lines, read_records, runs_table, steps_table
+from smash_analysis.tables.episodes import EPISODE_FORMAT, EPISODES, actions_table, episodes_table
+
+EXPORT_VERSION = "smash-tables/1"
+"""Written into the metadata of every Parquet file; columns may be added within a version."""
+FLATTENED = {
+    "verdict": ("accepted", "reason", "step"),
+    "commit": ("hash", "dirty"),
+    "machine": ("processor", "cores", "usable_cores", "memory_mib", "system"),
+}
+"""Small objects: each of their fields becomes the column `object_field`."""
+AS_JSON = ("budgets", "instance_document", "details", "versions")
+IN_OWN_TABLES = ("incumbents", "actions")
+TYPES = {
+    **dict.fromkeys(("max_topple", "cost", "lower_bound", "horizon", "verdict_step"), "Int64"),
+    **dict.fromkeys(("machine_cores", "machine_usable_cores", "machine_memory_mib"), "Int64"),
+    **dict.fromkeys(("verdict_accepted", "commit_dirty"), "boolean"),
+    **dict.fromkeys(("wall_seconds", "cpu_seconds", "memory_mib", "load_before", "load_after"), "float64"),
+    **dict.fromkeys(("bound_origin", "warm_start", "verdict_reason", "commit_hash"), "string"),
+}
+"""Types of the columns that may be empty, which would be guessed from what is there."""
+
+
+def tidy_runs(records: list[dict[str, Any]]) -> pd.DataFrame:
+    """Return one row a run: plain fields as they are, small objects as `object_field` columns, the rest as JSON text.
+
+    The columns are the same whatever the records hold.
+    """
+    flat = pd.DataFrame([_flat(record) for record in records])
+    not_plain = (*FLATTENED, *AS_JSON, *IN_OWN_TABLES, "load_average")
+    table = runs_table(records).drop(columns=list(not_plain), errors="ignore")
+    table = pd.concat([table, flat.set_index(table.index)], axis="columns")
+    table["started"] = pd.to_datetime(table["started"], utc=True)
+    return table.astype(TYPES)
+
+
+def _flat(record: dict[str, Any]) -> dict[str, Any]:
+    """Return the columns made of a record's nested fields."""
+    columns: dict[str, Any] = {}
+    for name, parts in FLATTENED.items():
+        inner = record[name] or {}
+        columns |= {f"{name}_{part}": inner.get(part) for part in parts}
+    before, after = record["load_average"]
+    columns |= {"load_before": before, "load_after": after}
+    return columns | {name: json.dumps(record[name]) for name in AS_JSON}
+
+
+def export(results: Path, out: Path) -> list[tuple[Path, int]]:
+    """Write every table as .parquet and .csv to `out`; return (file, rows) of each.
+
+    Raises:
+        NoRecords: where there are no records to be read.
+        OSError: where a file cannot be written.
+    """
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    records = read_records(results)
+    tables = {"runs": tidy_runs(records), "incumbents": incumbents_table(records), "steps": steps_table(records)}
+    if (results / EPISODES).is_file():
+        carried_out = read_lines(results / EPISODES, EPISODE_FORMAT)
+        tables |= {"episodes": episodes_table(carried_out), "actions": actions_table(carried_out)}
+    out.mkdir(parents=True, exist_ok=True)
+    files = []
+    for name, table in tables.items():
+        arrow = pa.Table.from_pandas(table, preserve_index=False)
+        metadata = {**(arrow.schema.metadata or {}), b"format": EXPORT_VERSION.encode()}
+        parquet.write_table(arrow.replace_schema_metadata(metadata), out / f"{name}.parquet")
+        table.to_csv(out / f"{name}.csv", index=False)
+        files += [(out / f"{name}.{ending}", len(table)) for ending in ("parquet", "csv")]
+    return files

@@ -1,0 +1,1 @@
+"""Statistics that are fair to subsets, effects, findings in words."""

@@ -1,0 +1,155 @@
+"""Tables beside the pictures, as CSV, Markdown and text."""
+
+from __future__ import annotations
+
+from math import isnan
+
+import pandas as pd
+
+from smash_analysis.statistics.intervals import FEWEST_UNITS, Rate, is_range, wilson
+
+
+def mean_std(values: pd.Series[float], digits: int = 2) -> str:
+    """Return `mean ± std` as the paper prints it (sample standard deviation), or a dash without a value."""
+    known = values.dropna()
+    if known.empty:
+        return "–"
+    spread = known.std() if len(known) > 1 else 0.0
+    return f"{known.mean():.{digits}f} ± {spread:.{digits}f}"
+
+
+def median_iqr(values: pd.Series[float], digits: int = 2) -> str:
+    """Return `median [first quartile, third quartile]`, or a dash without a value."""
+    known = values.dropna()
+    if known.empty:
+        return "–"
+    low, middle, high = known.quantile([0.25, 0.5, 0.75])
+    return f"{middle:.{digits}f} [{low:.{digits}f}, {high:.{digits}f}]"
+
+
+def share(successes: int, trials: int) -> str:
+    """Return a share in percent with its 95 % Wilson interval."""
+    low, high = wilson(successes, trials)
+    return f"{100 * successes / trials:.0f} % [{100 * low:.0f}, {100 * high:.0f}]" if trials else "–"
+
+
+SPREADS = (
+    f"Behind a mean or ratio stands its 95 % bootstrap interval in brackets; with fewer than {FEWEST_UNITS} instances "
+    "(or seeds of one instance), which carry no interval, their range in parentheses."
+)
+"""What `with_spread` shows, for a table's legend."""
+
+
+def with_spread(value: float, ends: tuple[float, float], units: int, digits: int = 1) -> str:
+    """Return a mean or ratio with its interval or range (`statistics.intervals.bootstrap`), or a dash without a value.
+
+    Args:
+        value: the mean or ratio.
+        ends: of its interval or range; not shown where there are none (nan).
+        units: how many it is made of.
+        digits: shown behind the point.
+    """
+    if isnan(value):
+        return "–"
+    low, high = (f"{end:.{digits}f}" for end in ends)
+    if isnan(ends[0]):
+        return f"{value:.{digits}f}"
+    return f"{value:.{digits}f} " + (f"({low} to {high})" if is_range(units) else f"[{low}, {high}]")
+
+
+RATES = (
+    "Success is the mean over instances of each one's own rate; its 95 % Wilson interval counts instances, not "
+    "episodes: seeds of one instance are not independent, and so it is conservative."
+)
+"""What `rate_cell` shows, for a table's legend."""
+
+
+def rate_cell(rate: Rate, trials: str) -> str:
+    """Return a rate with its 95 % interval, the number of instances and of trials (in words: episodes, say)."""
+    if not rate.units:
+        return "–"
+    low, high = rate.interval
+    return f"{rate.mean:.2f} [{low:.2f}, {high:.2f}] of {rate.units} ({rate.trials} {trials})"
+
+
+def ablation_table(runs: pd.DataFrame) -> pd.DataFrame:
+    """Return the table beside the heatmaps: per planner, suite, buffers and variant at the largest budget.
+
+    Args:
+        runs: `runs_table` without the cut-off runs.
+    """
+    largest = runs.groupby(["label", "suite"])["budget"].transform("max")
+    rows = []
+    for (label, suite, buffers, variant), part in runs[runs["budget"] == largest].groupby(
+        ["label", "suite", "buffers", "variant"]
+    ):
+        rows.append(
+            {
+                "planner": label,
+                "suite": suite,
+                "B": buffers,
+                "variant": variant,
+                "budget [s]": f"{part['budget'].iloc[0]:g}",
+                "runs": len(part),
+                "success": share(int(part["solved"].sum()), len(part)),
+                "actions, solved runs (mean ± std)": mean_std(part["cost"]),
+                "first plan [s] (median [IQR])": median_iqr(part["first_seconds"]),
+                "proven optimal": f"{part['proven'].sum()}/{len(part)}",
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def markdown(table: pd.DataFrame) -> str:
+    """Return a table as Markdown."""
+
+    def line(cells: list[str]) -> str:
+        return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+    head = [str(column) for column in table.columns]
+    body = [[str(cell) for cell in row] for row in table.itertuples(index=False)]
+    return "\n".join([line(head), line(["---"] * len(head)), *map(line, body)]) + "\n"
+
+
+LONG_TABLE = 40
+"""A table with more rows than this is broken over pages."""
+TEX = {
+    "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
+    "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "±": r"$\pm$", "≤": r"$\le$", "×": r"$\times$", "–": "--",
+    "✓": r"\checkmark", "“": "``", "”": "''", "…": r"\dots{}",
+}  # fmt: skip
+
+
+def tex(text: str) -> str:
+    """Return a text as LaTeX shows it as it stands."""
+    return "".join(TEX.get(letter, letter) for letter in text)
+
+
+def latex(table: pd.DataFrame, title: str, label: str) -> str:
+    """Return a table as LaTeX (booktabs), in the paper's layout: rows with the same first cell are one group.
+
+    A long one is a `longtable`, any other a float that is no wider than the text.
+    """
+    columns = "ll" + "c" * (len(table.columns) - 2)
+    head = " & ".join(tex(str(column)) for column in table.columns) + r" \\"
+    body: list[str] = []
+    last = ""
+    groups = table.iloc[:, 0].nunique() < len(table)
+    for row in table.itertuples(index=False):
+        cells = [str(cell) for cell in row]
+        if groups:
+            body += [r"\midrule"] if cells[0] != last and body else []
+            last, cells[0] = cells[0], "" if cells[0] == last else cells[0]
+        body.append(" & ".join(tex(cell) for cell in cells) + r" \\")
+    caption, mark = rf"\caption{{{tex(title)}}}", rf"\label{{{label}}}"
+    if len(body) > LONG_TABLE:
+        start = [r"\begingroup\tiny", rf"\begin{{longtable}}{{{columns}}}", rf"{caption}{mark} \\", r"\toprule", head]
+        start += [r"\midrule", r"\endhead"]
+        return "\n".join([*start, *body, r"\bottomrule", r"\end{longtable}", r"\endgroup"]) + "\n"
+    start = [
+        r"\begin{table*}[t]",
+        r"\centering\small",
+        r"\resizebox{\ifdim\width>\textwidth\textwidth\else\width\fi}{!}{%",
+    ]
+    start += [rf"\begin{{tabular}}{{{columns}}}", r"\toprule", head, r"\midrule"]
+    return "\n".join([*start, *body, r"\bottomrule", r"\end{tabular}}", caption, mark, r"\end{table*}"]) + "\n"

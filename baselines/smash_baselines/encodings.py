@@ -1,0 +1,168 @@
+"""PDDL encodings: the domains of `domains/`, those that others register, and which of them a problem needs.
+
+Topples at cost 1 have hand-written domains. Where an instance has further aggregating actions or costs, its domain is
+put together by `smash_baselines.parts`.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from importlib.metadata import entry_points
+
+from smash.problem.actions.registry import is_plain
+from smash.problem.errors import SmashError, Unsupported
+from smash.problem.model import Instance, PlanOptions
+from smash_baselines.domains import DOMAINS
+from smash_baselines.parts.domain import domain_name, domain_text
+from smash_baselines.parts.part import Part
+from smash_baselines.parts.registry import parts_of
+
+GROUP = "smash.encodings"
+"""The entry-point group of encodings from outside: a name to an `Encoding`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Encoding:
+    """A way to tell topples in PDDL: a domain, and which of the compiler's facts and steps it knows.
+
+    Every domain has the predicates and the pick and place actions of `domains/pick-and-place.pddl`. A topple is the
+    action `(topple ?b ?under)` or, at height 1, `(topple-base ?b ?l)`, where `?b` is the lowest block that falls;
+    in a `chain` it is `topple-begin`, `topple-drop`, `topple-end`, as in `domains/topple-chain.pddl`.
+
+    Attributes:
+        name: how it is called in records.
+        domain: the domain's PDDL name.
+        text: the domain's PDDL text.
+        topple: whether it can topple at all.
+        chain: whether `(top ?b ?region)` tells stacks from buffers and `(idle)` holds between topples.
+        closure: whether `(above …)` and `(stacked …)` hold at the start, as in `domains/topple-conditional.pddl`.
+        capped: whether it counts the blocks of a topple, from `(cap ?k)` down.
+        with_cap: the encoding that takes its place where `max_topple` binds; None: it cannot say that.
+        parts: of a domain of `smash_baselines.parts`, what it is put together from; they say facts and steps.
+    """
+
+    name: str
+    domain: str
+    text: str
+    topple: bool = True
+    chain: bool = False
+    closure: bool = False
+    capped: bool = False
+    with_cap: Encoding | None = None
+    parts: tuple[Part, ...] = ()
+
+    @property
+    def conditional_effects(self) -> bool:
+        """Whether it needs a planner that takes conditional effects (or axioms)."""
+        return re.search(r"\(\s*(when|:derived)\b", re.sub(r";.*", "", self.text)) is not None
+
+
+class UnknownEncoding(SmashError):
+    """A name that no encoding has; the message lists the valid ones."""
+
+    def __init__(self, name: str, known: list[str]) -> None:
+        self.name = name
+        self.known = known
+        super().__init__(f"no encoding is called {name!r}; known: {', '.join(known)}")
+
+
+def _filed(file: str) -> str:
+    return (DOMAINS / f"{file}.pddl").read_text(encoding="utf-8")
+
+
+PICK_AND_PLACE = Encoding("pick-and-place", "smash-pick-and-place", _filed("pick-and-place"), topple=False)
+CONDITIONAL = Encoding("topple-conditional", "smash-topple-conditional", _filed("topple-conditional"), closure=True)
+CHAIN_CAPPED = Encoding(
+    "topple-chain-capped", "smash-topple-chain-capped", _filed("topple-chain-capped"), chain=True, capped=True
+)
+CHAIN = Encoding("topple-chain", "smash-topple-chain", _filed("topple-chain"), chain=True, with_cap=CHAIN_CAPPED)
+
+ENCODINGS = {
+    "pick-and-place": PICK_AND_PLACE,
+    "conditional": CONDITIONAL,
+    "chain": CHAIN,
+    "chain-capped": CHAIN_CAPPED,
+}
+BY_DOMAIN = {encoding.domain: encoding for encoding in ENCODINGS.values()}
+TOPPLE_ENCODINGS = ("conditional", "chain")
+"""The two ways of this package to tell a topple: one action with conditional effects, or a chain of STRIPS actions."""
+FAMILY = "chain"
+"""The way in which further aggregating actions and costs can be told."""
+
+
+def encoding_names() -> list[str]:
+    """Return how topples can be told: the ways of this package, then those that others registered."""
+    return [*TOPPLE_ENCODINGS, *sorted(set(entry_points(group=GROUP).names) - set(TOPPLE_ENCODINGS))]
+
+
+def get_encoding(name: str) -> Encoding:
+    """Return the way to tell topples that is called `name`.
+
+    Raises:
+        UnknownEncoding: where none is called so.
+        Unsupported: where its module cannot be loaded, or holds no `Encoding`.
+    """
+    if name in TOPPLE_ENCODINGS:
+        return ENCODINGS[name]
+    entries = entry_points(group=GROUP, name=name)
+    if not entries:
+        raise UnknownEncoding(name, encoding_names())
+    try:
+        encoding = next(iter(entries)).load()
+    except (ImportError, AttributeError) as error:
+        raise Unsupported(f"encoding {name!r} is not installed: {error}") from None
+    if not isinstance(encoding, Encoding):
+        raise Unsupported(f"encoding {name!r} is no smash_baselines.encodings.Encoding")
+    return encoding
+
+
+def cap_of(instance: Instance, options: PlanOptions) -> int | None:
+    """Return `max_topple` where it binds: None where no pile can hold more blocks than that."""
+    cap = options.max_topple
+    return cap if options.topple and cap is not None and cap < len(instance.blocks) else None
+
+
+def family_encoding(instance: Instance, options: PlanOptions) -> Encoding:
+    """Return the encoding that knows exactly the actions and the costs of an instance."""
+    parts = parts_of(instance, options)
+    texts = {part.file(instance, options): part.text(instance, options) for part in parts}
+    name = domain_name(list(texts))
+    return Encoding(name.removeprefix("smash-"), name, domain_text(texts), parts=parts)
+
+
+def unsupported_reason(instance: Instance, options: PlanOptions, wanted: str) -> str | None:
+    """Return why the encoding `wanted` (`conditional`, `chain`, …) cannot say this problem, or None.
+
+    Raises:
+        UnknownEncoding: where none is called so.
+    """
+    cap = cap_of(instance, options)
+    if not is_plain(instance, options):
+        get_encoding(wanted)
+        return (
+            None if wanted == FAMILY else f"the {wanted} encoding knows topple alone, at cost 1; use the chain encoding"
+        )
+    if cap is not None and get_encoding(wanted).with_cap is None:
+        return f"the {wanted} encoding cannot count the blocks of a topple (max_topple {cap}); use the chain encoding"
+    return None
+
+
+def encoding_for(instance: Instance, options: PlanOptions, wanted: str) -> Encoding:
+    """Return the encoding of a problem under `options`, topples told in the way `wanted`.
+
+    Without topple all ways are the same pick-and-place domain.
+
+    Raises:
+        UnknownEncoding: where none is called so.
+        Unsupported: where `wanted` cannot say it.
+    """
+    reason = unsupported_reason(instance, options, wanted)
+    if reason is not None:
+        raise Unsupported(reason)
+    encoding = get_encoding(wanted)
+    if not is_plain(instance, options):
+        return family_encoding(instance, options)
+    if not options.topple:
+        return PICK_AND_PLACE
+    return encoding if cap_of(instance, options) is None else encoding.with_cap or encoding

@@ -1,0 +1,156 @@
+"""What all PDDL baselines share: compile, run an engine within the budget, read its plans back through the law."""
+
+from __future__ import annotations
+
+import tempfile
+from abc import abstractmethod
+from collections.abc import Iterable
+from copy import copy
+from dataclasses import dataclass, field
+from pathlib import Path
+from time import monotonic
+from typing import Any, ClassVar, Self
+
+from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
+from smash.problem.actions.registry import is_plain
+from smash.problem.errors import IllegalAction, PlannerCrashed, PlannerOutOfMemory, Unsupported
+from smash.problem.model import Instance, State
+from smash.problem.rules import Law
+from smash_baselines.encodings import FAMILY, UnknownEncoding, encoding_names, get_encoding, unsupported_reason
+from smash_baselines.engines.outcomes import Outcome
+from smash_baselines.engines.process import MEMORY_LIMIT
+from smash_baselines.facts import named_blocks, trim_buffers
+from smash_baselines.names import Step
+from smash_baselines.parts.registry import TOLD
+from smash_baselines.steps import actions_of
+from smash_baselines.task import PddlTask, compile_instance
+
+
+@dataclass(slots=True)
+class Run:
+    """One run of an engine on one task: its limits, the plans that it reports, what it measures."""
+
+    task: PddlTask
+    log: IncumbentLog
+    origin: str
+    directory: Path
+    deadline: float
+    memory: int
+    infeasible: bool = False
+    details: dict[str, Any] = field(default_factory=dict)
+
+    def offer(self, steps: Iterable[Step]) -> None:
+        """Take a plan of the engine; one that does not fit the encoding or the law is recorded as refused."""
+        try:
+            self.log.offer(actions_of(steps, self.task), self.origin)
+        except IllegalAction as error:
+            self.log.refusals.append(f"{self.origin}: {error}")
+
+    def raise_bound(self, bound: int) -> None:
+        """Take a lower bound that the engine proved."""
+        self.log.prove(bound, self.origin)
+
+
+class EnginePlanner(BasePlanner):
+    """A planner that hands the compiled problem to an engine outside of this process."""
+
+    name: str
+    """The engine's name in incumbents and bounds."""
+    encoding: str
+    """How topples are told to it: `conditional`, `chain`, or an encoding that others registered."""
+    falls_back: bool = False
+    """Whether it takes the chain for problems that its encoding cannot say because they go beyond topple at cost 1."""
+    aggregating: ClassVar[frozenset[str]] = TOLD
+    weighs: ClassVar[bool] = True
+
+    def __init__(self, memory: int = MEMORY_LIMIT) -> None:
+        """Make the planner.
+
+        Args:
+            memory: limit for all processes of the engine together [bytes].
+        """
+        self.memory = memory
+
+    def unsupported(self, instance: Instance, options: SolveOptions) -> str | None:
+        """Return why the encoding cannot say the problem, or None."""
+        encoding = self.encoding_of(instance, options)
+        reason = unsupported_reason(instance, options, encoding)
+        if reason is not None or not options.topple or self.takes_conditional_effects():
+            return reason
+        if get_encoding(encoding).conditional_effects:
+            return f"it takes no conditional effects, which the {encoding} encoding has; use the chain encoding"
+        return None
+
+    def encoding_of(self, instance: Instance, options: SolveOptions) -> str:
+        """Return how this problem is told to it."""
+        return self.encoding if not self.falls_back or is_plain(instance, options) else FAMILY
+
+    def with_encoding(self, encoding: str) -> Self:
+        """Return the same planner on another encoding: what `NAME:ENCODING` means.
+
+        Raises:
+            UnknownEncoding: where none is called so.
+        """
+        if encoding not in encoding_names():
+            raise UnknownEncoding(encoding, encoding_names())
+        other = copy(self)
+        other.falls_back = False
+        other.name, other.encoding = f"{self.name.partition(':')[0]}:{encoding}", encoding
+        return other
+
+    def takes_conditional_effects(self) -> bool:
+        """Return whether it takes encodings with conditional effects."""
+        return True
+
+    def solve(
+        self,
+        instance: Instance,
+        options: SolveOptions,
+        budget: float,
+        on_incumbent: OnIncumbent | None = None,
+    ) -> PlanResult:
+        """Plan for at most `budget` seconds, compilation and the engine's translation included.
+
+        Raises:
+            Unsupported: where the encoding or the engine cannot take the problem.
+            PlannerCrashed: where the engine ends abnormally or at its memory limit without a plan.
+        """
+        deadline = monotonic() + budget
+        log = IncumbentLog(instance, options, on_incumbent)
+        if Law(instance, options).goal_shortfall(State.start_of(instance)) is None:
+            log.offer((), "start")
+            log.prove(0, "start")
+            return log.result()
+        encoding, picked = self.encoding_of(instance, options), named_blocks(instance)
+        task = compile_instance(trim_buffers(instance), options, encoding, picked)
+        with tempfile.TemporaryDirectory(prefix="smash-", ignore_cleanup_errors=True) as folder:
+            run = Run(task, log, self.name, Path(folder), deadline, self.memory)
+            run.details["encoding"] = task.encoding.name
+            run.details["compile_seconds"] = round(log.elapsed, 4)
+            outcome = self.run(run)
+        return self._result(run, outcome)
+
+    @abstractmethod
+    def run(self, run: Run) -> Outcome:
+        """Run the engine: offer its plans and bounds to `run` as they come, and say how it ended."""
+
+    def _result(self, run: Run, outcome: Outcome) -> PlanResult:
+        run.details["outcome"] = outcome.text
+        if run.log.refusals:
+            run.details["refused"] = list(run.log.refusals)
+        if run.log.best is None and outcome.kind == "memory":
+            raise PlannerOutOfMemory(f"{self.name}: {outcome.text} ({run.memory >> 20} MiB)")
+        if run.log.best is None and outcome.kind == "crashed":
+            raise PlannerCrashed(f"{self.name}: {outcome.text}{_last_words(run)}")
+        if run.log.best is None and outcome.kind == "unsupported":
+            raise Unsupported(f"{self.name}: {outcome.text}")
+        return run.log.result(
+            infeasible=run.infeasible,
+            bound_origin=self.name,
+            details=run.details,
+        )
+
+
+def _last_words(run: Run) -> str:
+    words = run.details.get("last_words")
+    return f" ({words})" if words else ""

@@ -1,0 +1,1 @@
+"""Engines of others: Fast Downward, SymK, ENHSP, Aries, each a process with limits."""

@@ -1,0 +1,94 @@
+"""What an aggregating action is to the arm: one object that plans it, foresees its outcome and checks what came of it.
+
+Each kind lives in one small file and is listed in the `registry` beside it, as its law is in
+`smash.problem.actions.registry`; grounding, performing and recovery ask nothing but this interface.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
+
+from smash.execution.actions.pick_and_place import Segment, Steps
+from smash.execution.scene.block_pose import BlockPose
+from smash.execution.scene.tabletop import Slot
+from smash.motion.poses import Vector
+from smash.problem.model import Aggregating, State
+
+A = TypeVar("A", bound=Aggregating)
+
+
+@dataclass
+class Geometry:
+    """Where things are: what the law's state means on the table.
+
+    Attributes:
+        slots: The slot of every location.
+        stations: The slot of every station.
+        blocks: Poses of the blocks, as far as they are known.
+        carriers: Poses of the carriers.
+    """
+
+    slots: Mapping[str, Slot]
+    stations: Mapping[str, Slot] = field(default_factory=dict)
+    blocks: dict[str, BlockPose] = field(default_factory=dict)
+    carriers: dict[str, BlockPose] = field(default_factory=dict)
+
+    def seen(self, blocks: Mapping[str, BlockPose], carriers: Mapping[str, BlockPose]) -> Geometry:
+        """The same table with these poses."""
+        return Geometry(self.slots, self.stations, dict(blocks), dict(carriers))
+
+    def point(self, place: str) -> tuple[float, float]:
+        """World x, y of a location, a carrier or a station [m]."""
+        if place in self.carriers:
+            x, y = self.carriers[place].position[:2]
+            return float(x), float(y)
+        slot = self.slots.get(place) or self.stations[place]
+        return slot.x, slot.y
+
+
+class AggregateMotion(ABC, Generic[A]):
+    """How the arm carries out one kind of aggregating action.
+
+    Attributes:
+        action: The class of its actions.
+    """
+
+    action: type[A]
+
+    @abstractmethod
+    def plan(self, steps: Steps, start: Vector, action: A, state: State, where: Geometry) -> list[Segment]:
+        """Plan the motions of a legal action.
+
+        Args:
+            steps: Plans motions.
+            start: Where the arm is [rad], shape (7,).
+            action: The action.
+            state: The law's state before it.
+            where: The poses that are known then.
+
+        Raises:
+            ExecutionFailure: where there is no motion for it.
+        """
+
+    @abstractmethod
+    def foresee(self, steps: Steps, action: A, state: State, where: Geometry) -> None:
+        """Change `where` as the action will; poses that nobody can foresee are taken out."""
+
+    @abstractmethod
+    def places(self, action: A) -> tuple[str, ...]:
+        """Return the places where a loose block would be in the action's way."""
+
+    def motions(self, action: A, state: State) -> int:
+        """Return how many motions the action is meant to take from the law's state before it."""
+        return 1
+
+    def unfinished(self, action: A, state: State) -> bool:
+        """Return whether the state after the motion asks for another one of the same action."""
+        return False
+
+    def anchor(self, action: A, state: State, where: Geometry) -> Vector | None:
+        """The position of what the hand takes hold of [m], shape (3,): a motion is good while it is there."""
+        return None

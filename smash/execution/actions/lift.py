@@ -1,0 +1,198 @@
+"""Lift: the hand takes a pile by one of its blocks, from the side, and puts it on another with all that stands on it.
+
+From above the palm would meet the block over the one that is grasped: the fingers are shorter than a block is high. So
+the hand comes in level with the block, or from a little above where the table is near, the fingers at two of its sides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import atan2, cos, pi, radians, sin
+
+import numpy as np
+
+from smash.execution.actions.kind import AggregateMotion, Geometry
+from smash.execution.actions.level import FIRST_JOINT, Gentleness, level_way
+from smash.execution.actions.pick_and_place import (
+    CLOSE_SECONDS,
+    ENOUGH_CLEARANCE,
+    OPEN_SECONDS,
+    OPENINGS,
+    RELEASE_HEIGHT,
+    Grip,
+    Move,
+    Segment,
+    Steps,
+)
+from smash.execution.scene.block_pose import QUARTER, BlockPose, standing
+from smash.motion.collision import CONTACT_MARGIN, CollisionChecker
+from smash.motion.errors import ExecutionFailure, NoIk, NoMotion
+from smash.motion.kinematics import descend, inverse
+from smash.motion.obstacles import Attached, BodyName, HandState, Scene
+from smash.motion.poses import Matrix, ToolPose, Vector, yaw_rotation
+from smash.motion.robot import panda
+from smash.problem.actions.lift import Lift
+from smash.problem.model import State
+
+TILTS = (0.0, radians(20.0), radians(30.0))
+"""How far the hand points below the horizontal [rad]."""
+BACK = 0.012
+"""The block is held this far in front of its middle, for room between the palm and the block above [m]."""
+RUN_UP = 0.08
+"""Length of the straight way to the block and off it [m]."""
+SOLUTIONS = 2
+FURTHEST_BESIDE = radians(100.0)
+"""The pile may turn against the arm by this much on its way, not face about [rad]."""
+MOST_GRASPS = 8
+"""Grasps that are tried, those with most room first."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Grasp:
+    """One way to hold what is lifted.
+
+    Attributes:
+        joints: The arm as the hand closes [rad], shape (7,).
+        goal: The tool as it opens.
+        room: The hand's, at both [m].
+        far: How far the arm goes to it and turns with it [rad].
+    """
+
+    joints: Vector
+    goal: ToolPose
+    room: float
+    far: float
+
+
+class LiftMotion(AggregateMotion[Lift]):
+    """A grasp from the side, a level way, and back off; poses afterwards are known."""
+
+    action = Lift
+
+    def plan(self, steps: Steps, start: Vector, action: Lift, state: State, where: Geometry) -> list[Segment]:
+        """Plan the way to the pile, the level way with its upper part, and the way off.
+
+        Raises:
+            NoIk, NoMotion: where there is none; the message is about the grasp with most room.
+        """
+        lifted = state.piles[action.source][action.height - 1 :]
+        scene = steps.scene(where.blocks, where.carriers)
+        target = _target(steps, action, state, where)
+        problem: ExecutionFailure | None = None
+        for grasp in _grasps(steps, start, lifted, where.blocks[lifted[0]], target, scene)[:MOST_GRASPS]:
+            try:
+                return _with_grasp(steps, start, grasp, lifted, scene)
+            except ExecutionFailure as failure:
+                problem = problem or failure
+        assert problem is not None
+        raise problem
+
+    def foresee(self, steps: Steps, action: Lift, state: State, where: Geometry) -> None:
+        """Move the blocks to the other pile."""
+        lowest = _target(steps, action, state, where)
+        for level, block in enumerate(state.piles[action.source][action.height - 1 :]):
+            where.blocks[block] = BlockPose(lowest.position + np.array([0.0, 0.0, level * steps.side]), lowest.rotation)
+
+    def places(self, action: Lift) -> tuple[str, ...]:
+        """Return both locations."""
+        return action.source, action.target
+
+    def anchor(self, action: Lift, state: State, where: Geometry) -> Vector | None:
+        """The block that is grasped, where its pose is known."""
+        pose = where.blocks.get(state.piles[action.source][action.height - 1])
+        return None if pose is None else pose.position
+
+
+def _target(steps: Steps, action: Lift, state: State, where: Geometry) -> BlockPose:
+    """Where the lowest lifted block shall stand."""
+    slot = where.slots[action.target]
+    return standing(slot.x, slot.y, (len(state.piles[action.target]) + 0.5) * steps.side, slot.angle)
+
+
+def _hand_rotation(azimuth: float, tilt: float, side: float) -> Matrix:
+    """Tool axes of a hand that points along `azimuth` and `tilt` below the horizontal [rad]; `side` is 1 or -1."""
+    z = np.array([cos(tilt) * cos(azimuth), cos(tilt) * sin(azimuth), -sin(tilt)])
+    y = side * np.array([-sin(azimuth), cos(azimuth), 0.0])
+    return np.stack([np.cross(y, z), y, z], axis=1)
+
+
+def _grasps(
+    steps: Steps, start: Vector, lifted: list[str], pose: BlockPose, target: BlockPose, scene: Scene
+) -> list[_Grasp]:
+    """Ways to hold the lowest lifted block, those with most room at both ends first, then those near `start`.
+
+    Raises:
+        NoIk: where the arm reaches it from no side.
+        NoMotion: where the hand has no room at one of the ends.
+    """
+    opened = HandState(steps.side / 2 + OPENINGS[0])
+    here = CollisionChecker(scene.without(lifted[:1]), opened, 0.0)
+    there = CollisionChecker(scene.without(lifted), opened, 0.0)
+    found: list[_Grasp] = []
+    reached = False
+    for tool in _holds(pose):
+        for joints in inverse(tool, start, count=SOLUTIONS):
+            reached = True
+            room = here.slack(joints)
+            if room <= CONTACT_MARGIN:
+                continue
+            for goal, turn in _goals(tool, pose, target):
+                end = descend(goal, joints + turn * FIRST_JOINT, panda())
+                if end is not None and (room_there := there.slack(end)) > CONTACT_MARGIN:
+                    far = float(np.abs(joints - start).max() + abs(end[0] - joints[0]))
+                    found.append(_Grasp(joints, goal, min(room, room_there), far))
+    if not reached:
+        raise NoIk(f"the hand cannot reach block {lifted[0]!r} from the side")
+    if not found:
+        raise NoMotion(f"no room for the hand beside block {lifted[0]!r}, here or where it is put")
+    return sorted(found, key=lambda grasp: (-min(grasp.room, ENOUGH_CLEARANCE), grasp.far))
+
+
+def _holds(pose: BlockPose) -> Iterator[ToolPose]:
+    """Tool poses that hold a block from its four sides."""
+    for quarter in range(4):
+        for tilt in TILTS:
+            for side in (1.0, -1.0):
+                rotation = _hand_rotation(pose.yaw + quarter * QUARTER, tilt, side)
+                yield ToolPose(pose.position - BACK * rotation[:, 2], rotation)
+
+
+def _goals(tool: ToolPose, block: BlockPose, target: BlockPose) -> Iterator[tuple[ToolPose, float]]:
+    """Tool poses at the target that hold the block as `tool` does, each with the turn that leads there [rad]."""
+    bearing, wanted = (atan2(float(pose.position[1]), float(pose.position[0])) for pose in (block, target))
+    rise = np.array([0.0, 0.0, RELEASE_HEIGHT])
+    for quarter in range(4):
+        turn = target.yaw - block.yaw + quarter * QUARTER
+        rotation = yaw_rotation(turn)
+        beside = (turn - (wanted - bearing) + pi) % (2 * pi) - pi
+        if abs(beside) < FURTHEST_BESIDE:
+            offset = rotation @ (tool.position - block.position)
+            yield ToolPose(target.position + rise + offset, rotation @ tool.rotation), wanted - bearing + beside
+
+
+def _with_grasp(steps: Steps, start: Vector, grasp: _Grasp, lifted: list[str], scene: Scene) -> list[Segment]:
+    """The motions with one grasp.
+
+    Raises:
+        NoIk, NoMotion: where there are none.
+    """
+    moved: frozenset[BodyName] = frozenset(lifted)
+    rest, opened = scene.without(moved), HandState(steps.side / 2 + OPENINGS[0])
+    joints, goal = grasp.joints, grasp.goal
+    tool = panda().forward(joints)
+    back = -RUN_UP * tool.rotation[:, 2]
+    way_in = steps.motion.line(joints, back, scene.without(lifted[:1]), hand=opened).reversed()
+    held = HandState(steps.side / 2, Attached.of_scene(scene.only_of(moved), tool))
+    friction = steps.tabletop.friction.block
+    way: list[Move] = level_way(steps, joints, goal, rest, held, moved, Gentleness.of_friction(friction, friction))
+    there = way[-1].path.end
+    way_off = steps.motion.line(there, -RUN_UP * goal.rotation[:, 2], rest, hand=opened)
+    return [
+        *steps.transfer(start, way_in.start, scene, opened),
+        steps.move(way_in, opened, moved, CONTACT_MARGIN),
+        Grip(0.0, CLOSE_SECONDS),
+        *way,
+        Grip(opened.opening, OPEN_SECONDS),
+        steps.move(way_off, opened, moved, CONTACT_MARGIN),
+    ]

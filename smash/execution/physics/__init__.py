@@ -1,0 +1,1 @@
+"""The simulated world: the arm, the blocks, time."""

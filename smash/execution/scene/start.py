@@ -1,0 +1,76 @@
+"""Where the blocks are when an episode begins: the instance's piles on their slots, with a little seeded disorder."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from math import hypot
+
+import numpy as np
+
+from smash.execution.scene.block_pose import BlockPose, standing
+from smash.execution.scene.tabletop import DoesNotFit, Slot, Tabletop
+from smash.problem.model import Instance
+
+JITTER = 0.0005
+"""Standard deviation of a block's place on what carries it [m]."""
+TURN = 0.01
+"""Standard deviation of its yaw [rad]."""
+LARGEST = 2.0
+"""Jitter is cut off at so many standard deviations."""
+REGION_LENGTH = (0.09, 0.30)
+"""Blocks that start in the table region lie so far along a stack's topple direction [m], ..."""
+REGION_HALF_WIDTH = 0.05
+"""... so far aside of it, ..."""
+REGION_APART = 2.0
+"""... and so many sides apart."""
+
+
+def starting_carriers(instance: Instance, stations: Mapping[str, Slot], tabletop: Tabletop) -> dict[str, BlockPose]:
+    """Poses of the carriers: each stands exactly at its station."""
+    return {carrier.name: tabletop.tray_at(stations[carrier.at]) for carrier in instance.carriers}
+
+
+def starting_poses(
+    instance: Instance,
+    slots: Mapping[str, Slot],
+    tabletop: Tabletop,
+    generator: np.random.Generator,
+    carriers: Mapping[str, BlockPose] | None = None,
+) -> dict[str, BlockPose]:
+    """Poses of all blocks, in the order of `instance.blocks`.
+
+    Raises:
+        DoesNotFit: where the table region is too small for the blocks that start in it.
+    """
+    side = tabletop.side
+    poses: dict[str, BlockPose] = {}
+    for location, slot in slots.items():
+        for level, block in enumerate(instance.start.get(location, ())):
+            dx, dy, turn = np.clip(generator.normal(size=3), -LARGEST, LARGEST) * (JITTER, JITTER, TURN)
+            poses[block] = standing(slot.x + dx, slot.y + dy, (level + 0.5) * side, slot.angle + turn)
+    for carrier in instance.carriers:
+        assert tabletop.tray is not None
+        for cell, block in enumerate(carrier.holds):
+            poses[block] = tabletop.tray.cell((carriers or {})[carrier.name], cell)
+    taken = [*poses.values(), *(carriers or {}).values()]
+    for block in instance.table:
+        poses[block] = _in_region(tabletop, slots, taken, generator)
+        taken.append(poses[block])
+    return {block: poses[block] for block in instance.blocks}
+
+
+def _in_region(
+    tabletop: Tabletop, slots: Mapping[str, Slot], poses: Iterable[BlockPose], generator: np.random.Generator
+) -> BlockPose:
+    """A free place in the landing strips of the scene's stacks."""
+    side = tabletop.side
+    taken = [(float(pose.position[0]), float(pose.position[1])) for pose in poses]
+    taken += [(slot.x, slot.y) for slot in slots.values()]
+    for _ in range(2000):
+        slot = tabletop.stacks[int(generator.integers(len(tabletop.stacks)))]
+        along = float(generator.uniform(*REGION_LENGTH))
+        aside = float(generator.uniform(-REGION_HALF_WIDTH, REGION_HALF_WIDTH))
+        x, y = slot.point(along, aside, slot.directions[0])
+        if all(hypot(x - other_x, y - other_y) > REGION_APART * side for other_x, other_y in taken):
+            return standing(x, y, side / 2, float(generator.uniform(-np.pi, np.pi)))
+    raise DoesNotFit(f"the table region of scene {tabletop.name!r} has no room for so many blocks")

@@ -1,0 +1,170 @@
+"""The table: where stacks and buffers stand, how large the blocks are, where a topple sends them.
+
+World frame: the robot's base at the origin, the table top at z = 0. A *slot* is the place of one stack location. Its
+frame (the stack's frame of the paper's pre-smash pose) has x radially outward and y counter-clockwise around the base.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from hashlib import sha256
+from math import cos, hypot, pi, sin
+
+from smash.execution.scene.block_pose import QUARTER, BlockPose
+from smash.execution.scene.tray import Tray
+from smash.problem.errors import SmashError
+from smash.problem.model import Instance
+
+DIRECTIONS: Mapping[str, float] = {
+    "counter-clockwise": pi / 2,
+    "clockwise": -pi / 2,
+    "outward": 0.0,
+    "inward": pi,
+}
+"""Topple directions along the axes of a slot's frame: name -> angle from the slot's x axis [rad]."""
+
+HIGHEST = 12
+"""The most blocks of 4.5 cm that the arm can stack from above within its joint limits; other sizes in proportion."""
+
+
+class DoesNotFit(SmashError):
+    """An instance that the scene has no room for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """The place of one stack location on the table.
+
+    Attributes:
+        radius: Distance from the robot's base [m].
+        angle: Bearing, also the direction of the frame's x axis [rad].
+        directions: Names of the directions it may be toppled in, preferred first; none at a buffer.
+    """
+
+    radius: float
+    angle: float
+    directions: tuple[str, ...] = ()
+
+    @property
+    def x(self) -> float:
+        """World x [m]."""
+        return self.radius * cos(self.angle)
+
+    @property
+    def y(self) -> float:
+        """World y [m]."""
+        return self.radius * sin(self.angle)
+
+    def heading(self, direction: str) -> float:
+        """World yaw of a topple direction [rad]."""
+        return self.angle + DIRECTIONS[direction]
+
+    def distance(self, x: float, y: float) -> float:
+        """Horizontal distance of a point from the slot's middle [m]."""
+        return hypot(x - self.x, y - self.y)
+
+    def point(self, along: float, aside: float, direction: str) -> tuple[float, float]:
+        """World x, y of a point `along` [m] a topple direction and `aside` [m] to its left."""
+        yaw = self.heading(direction)
+        return (
+            self.x + along * cos(yaw) - aside * sin(yaw),
+            self.y + along * sin(yaw) + aside * cos(yaw),
+        )
+
+    def coordinates(self, x: float, y: float, direction: str) -> tuple[float, float]:
+        """Inverse of `point`: how far along and aside a world point lies [m]."""
+        yaw = self.heading(direction)
+        dx, dy = x - self.x, y - self.y
+        return dx * cos(yaw) + dy * sin(yaw), -dx * sin(yaw) + dy * cos(yaw)
+
+
+@dataclass(frozen=True, slots=True)
+class Friction:
+    """Coulomb coefficients; at a contact those of the two bodies multiply."""
+
+    block: float = 0.45
+    table: float = 0.9
+    finger: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Tabletop:
+    """A scene as its file describes it.
+
+    Attributes:
+        name: What the scene is called in records.
+        side: Side of a block [m].
+        mass: Mass of a block [kg].
+        friction: Friction coefficients.
+        velocity: Share of the arm's velocity limits that motions use.
+        acceleration: Share of its acceleration limits.
+        stacks: Slots of `stacks` locations, each with its topple directions.
+        buffers: Slots of buffers.
+        tray: What carriers are; none in a scene without stations.
+        stations: Slots that trays can stand at, their length across the bearing.
+    """
+
+    name: str
+    side: float
+    mass: float
+    friction: Friction
+    velocity: float
+    acceleration: float
+    stacks: tuple[Slot, ...]
+    buffers: tuple[Slot, ...]
+    tray: Tray | None = None
+    stations: tuple[Slot, ...] = ()
+
+    @property
+    def slots(self) -> tuple[Slot, ...]:
+        """All slots, stacks first."""
+        return self.stacks + self.buffers
+
+    @property
+    def fingerprint(self) -> str:
+        """Eight characters that tell this scene from others, whatever they are called."""
+        return sha256(repr(self).encode()).hexdigest()[:8]
+
+    @property
+    def highest(self) -> int:
+        """The most blocks of a pile that the arm can work on from above."""
+        return int(HIGHEST * 0.045 / self.side)
+
+    def bind(self, instance: Instance) -> dict[str, Slot]:
+        """Give every location of `instance` its slot, in order.
+
+        Raises:
+            DoesNotFit: where the instance has more stacks, buffers, stations or blocks, or larger carriers, than the
+                scene has room for.
+        """
+        cells = 0 if self.tray is None else self.tray.capacity
+        for what, wanted, room in (
+            ("stacks", len(instance.stacks), len(self.stacks)),
+            ("buffers", len(instance.buffers), len(self.buffers)),
+            ("blocks, which a plan may pile up", len(instance.blocks), self.highest),
+            ("stations", len(stations_of(instance)), len(self.stations)),
+            ("places on a carrier", max((c.capacity for c in instance.carriers), default=0), cells),
+        ):
+            if wanted > room:
+                raise DoesNotFit(
+                    f"instance {instance.name!r} has {wanted} {what}; scene {self.name!r} has room for {room}"
+                )
+        return {
+            **dict(zip(instance.stacks, self.stacks, strict=False)),
+            **dict(zip(instance.buffers, self.buffers, strict=False)),
+        }
+
+    def bind_stations(self, instance: Instance) -> dict[str, Slot]:
+        """Give every station of the carriers of an instance that `bind` has accepted its slot, in order."""
+        return dict(zip(stations_of(instance), self.stations, strict=False))
+
+    def tray_at(self, station: Slot) -> BlockPose:
+        """The pose of a tray that stands at a station: its length across the bearing."""
+        assert self.tray is not None, "a scene without a tray is bound to no instance with carriers"
+        return self.tray.at(station.x, station.y, station.angle + QUARTER)
+
+
+def stations_of(instance: Instance) -> tuple[str, ...]:
+    """The stations of all carriers, in the instance's order, each once."""
+    return tuple(dict.fromkeys(station for carrier in instance.carriers for station in carrier.stations))

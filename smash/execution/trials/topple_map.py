@@ -1,0 +1,184 @@
+"""Where toppled blocks land, by the height of the cut and the number that fall, and how often all goes well.
+
+The paper's future work: execution feedback for the task layer. A trial topples one pile in a fresh world; it is a
+success if everything that should stand still stands, and every toppled block can be grasped where it lies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from smash.execution.actions.kind import Geometry
+from smash.execution.actions.pick_and_place import Steps
+from smash.execution.actions.topple import strip
+from smash.execution.episode import Performed
+from smash.execution.grounding import Grounder, Task
+from smash.execution.performing import Performer
+from smash.execution.physics.world import World
+from smash.execution.policy import OPEN
+from smash.execution.readback import read_state
+from smash.execution.scene.block_pose import BlockPose
+from smash.execution.scene.start import starting_poses
+from smash.execution.scene.tabletop import Tabletop
+from smash.execution.trials.estimates import Estimates, Rate
+from smash.motion.errors import ExecutionFailure
+from smash.motion.robot import READY
+from smash.problem.actions.topple import Topple
+from smash.problem.files.instances import make_instance
+from smash.problem.model import PositionsGoal
+
+TRIAL_FORMAT = "smash-topple-trial/1"
+
+
+Key = tuple[str, int, int, int, int]
+"""What tells a trial from the others: the scene's fingerprint, stack, height of the cut, number falling, seed."""
+
+
+class Landing(msgspec.Struct, frozen=True):
+    """Where one block came to rest, in the push's frame, from the pile's middle [m]; whether it can be grasped."""
+
+    level: int
+    along: float
+    aside: float
+    graspable: bool
+
+
+class Trial(msgspec.Struct, frozen=True, kw_only=True):
+    """One topple.
+
+    Attributes:
+        layout: The scene's fingerprint.
+        stack: Index of the scene's stack.
+        height: Lowest level that falls, 1 is the bottom.
+        falling: Number of blocks that fall.
+        seed: Of the start poses.
+        moved: Largest displacement of a block below the cut [m].
+        stands: Whether the lower part still stands at its place, by the law's reading of the scene.
+        landings: One per toppled block, from the cut upward; empty where no push was found.
+        problem: Why there was no push, or nothing.
+    """
+
+    format: str = TRIAL_FORMAT
+    scene: str
+    layout: str = ""
+    stack: int
+    height: int
+    falling: int
+    seed: int
+    moved: float = 0.0
+    stands: bool = False
+    landings: tuple[Landing, ...] = ()
+    problem: str = ""
+
+    @property
+    def key(self) -> Key:
+        """What tells a trial from the others."""
+        return self.layout, self.stack, self.height, self.falling, self.seed
+
+    @property
+    def success(self) -> bool:
+        """Whether the plan could go on as the law says."""
+        return self.stands and bool(self.landings) and all(landing.graspable for landing in self.landings)
+
+
+def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: int) -> Trial:
+    """Topple `falling` blocks from `height` upward off one of the scene's stacks."""
+    names = [f"b{level}" for level in range(1, height + falling)]
+    location, slot = f"s{stack}", tabletop.stacks[stack]
+    instance = make_instance(
+        name="trial", blocks=names, stacks=[location], start={location: names}, goal=PositionsGoal({})
+    )
+    slots = {location: slot}
+    poses = starting_poses(instance, slots, tabletop, np.random.default_rng(seed))
+    steps = Steps(tabletop, seed)
+    action = Topple(location, height)
+    blank = Trial(
+        scene=tabletop.name, layout=tabletop.fingerprint, stack=stack, height=height, falling=falling, seed=seed
+    )
+    with World(tabletop, poses, READY) as world:
+        world.settle()
+        before = world.poses()
+        performer = Performer(world, Grounder(steps), Geometry(slots), OPEN)
+        try:
+            performer.perform(Task(action, None), Performed(step=1, action=[], origin="plan"), performer.observe())
+        except ExecutionFailure as failure:
+            return msgspec.structs.replace(blank, problem=str(failure))
+        after, arm = world.poses(), world.commanded()
+    lower = names[: height - 1]
+    return msgspec.structs.replace(
+        blank,
+        moved=max((float(np.linalg.norm(after[b].position - before[b].position)) for b in lower), default=0.0),
+        stands=read_state(Geometry(slots, blocks=after), tabletop).piles[location] == lower,
+        landings=tuple(
+            _landing(steps, tabletop, stack, names.index(b) + 1, b, after, arm) for b in names[height - 1 :]
+        ),
+    )
+
+
+def _landing(
+    steps: Steps, tabletop: Tabletop, stack: int, level: int, block: str, poses: Mapping[str, BlockPose], arm: Any
+) -> Landing:
+    slot = tabletop.stacks[stack]
+    position = poses[block].position
+    along, aside = slot.coordinates(float(position[0]), float(position[1]), slot.directions[0])
+    try:
+        steps.pick(arm, block, poses[block], steps.scene(poses))
+        graspable = True
+    except ExecutionFailure:
+        graspable = False
+    return Landing(level, along, aside, graspable)
+
+
+def estimates(scene: str, trials: Iterable[Trial]) -> Estimates:
+    """Success rates by height of the cut and number of falling blocks."""
+    counts: dict[int, dict[int, Rate]] = {}
+    for trial in trials:
+        by_size = counts.setdefault(trial.height, {})
+        known = by_size.get(trial.falling)
+        good, total = (0, 0) if known is None else (known.successes, known.trials)
+        by_size[trial.falling] = Rate(good + trial.success, total + 1)
+    return Estimates.of(scene, counts)
+
+
+def draw(trials: Sequence[Trial], path: Path) -> None:
+    """Plot where blocks landed: a row per height of the cut, a column per number of falling blocks."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Rectangle
+
+    heights, sizes = sorted({t.height for t in trials}), sorted({t.falling for t in trials})
+    figure = Figure(figsize=(2.1 * len(sizes) + 0.6, 1.25 * len(heights) + 1.0), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(len(heights), len(sizes), squeeze=False, sharex=True, sharey=True)
+    for row, height in enumerate(heights):
+        for column, size in enumerate(sizes):
+            axis, area = axes[row][column], strip(size)
+            part = [t for t in trials if (t.height, t.falling) == (height, size)]
+            corner = (0.0, -100 * area.half_width)
+            axis.add_patch(Rectangle(corner, 100 * area.length, 200 * area.half_width, color="#d9822b", alpha=0.15))
+            axis.plot(0, 0, "s", color="#2563a8", markersize=4)
+            for graspable, colour, marker in ((True, "#2f7d4f", "o"), (False, "#c0392b", "x")):
+                points = [p for t in part for p in t.landings if p.graspable == graspable]
+                axis.scatter(
+                    [100 * p.along for p in points], [100 * p.aside for p in points], s=9, c=colour, marker=marker
+                )
+            axis.set_title(f"{sum(t.success for t in part)}/{len(part)}" if part else "–", fontsize=8, pad=2)
+            axis.set_aspect("equal")
+            axis.tick_params(labelsize=7)
+            if column == 0:
+                axis.set_ylabel(f"cut at {height}\naside [cm]", fontsize=8)
+            if row == len(heights) - 1:
+                axis.set_xlabel(f"along [cm]\n{size} falling", fontsize=8)
+    # The second of several pushes may go the other way.
+    nearest = min((100 * landing.along for trial in trials for landing in trial.landings), default=0.0)
+    axes[0][0].set(xlim=(min(-12.0, nearest - 5), 82), ylim=(-18, 18))
+    figure.suptitle(
+        "Landings of toppled blocks (successes/trials); red: cannot be grasped from above; shaded: first push's strip",
+        fontsize=9,
+    )
+    figure.savefig(path, dpi=150)

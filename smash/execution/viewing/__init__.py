@@ -1,0 +1,1 @@
+"""What an episode looked like: recordings, pictures, films, replays, trajectories."""

@@ -1,0 +1,114 @@
+"""A recorded episode as one HTML page that plays it in 3D: no library, no network, nothing outside the file."""
+
+from __future__ import annotations
+
+import base64
+import html
+import json
+import re
+from collections.abc import Mapping
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from smash.execution.episode import Episode
+from smash.execution.scene.tabletop import Tabletop
+from smash.execution.viewing.pictures import block_colours
+from smash.execution.viewing.recording import Recording
+from smash.motion.robot import panda_urdf
+from smash.problem.files.documents import write_text
+from smash.problem.model import Goal, Instance, OnGoal, PositionsGoal, StacksGoal
+
+TEMPLATE = Path(__file__).parent / "replay.html"
+MESHES = ("link0", *(f"link{number}" for number in range(1, 8)), "hand", "finger", "finger")
+"""Mesh of each drawn part: base, the arm's links, hand, left and right finger."""
+
+
+BESIDE = 0.02
+"""The name of a location stands on the table, this far beyond what marks its place [m]."""
+
+
+def write_replay(path: Path, recording: Recording, tabletop: Tabletop, episode: Episode, instance: Instance) -> None:
+    """Write the page.
+
+    Args:
+        path: Where to.
+        recording: The frames.
+        tabletop: The scene.
+        episode: What was done, for captions.
+        instance: What was to be done: the names of blocks, in the recording's order, and of locations, and the goal.
+    """
+    scene: dict[str, Any] = {
+        "side": tabletop.side,
+        "slots": [[slot.x, slot.y, slot.angle, bool(slot.directions)] for slot in tabletop.slots],
+        "places": _places(tabletop, instance),
+        "blocks": instance.blocks,
+        "colours": block_colours(len(instance.blocks)),
+        "meshes": [_packed(_mesh(name)) for name in MESHES],
+        "times": _packed(np.array(recording.times)),
+        "links": _packed(np.array(recording.links)),
+        "poses": _packed(np.array(recording.blocks)),
+        "carriers": len(recording.trays[0]),
+        "tray": [] if tabletop.tray is None else np.hstack(tabletop.tray.boxes).tolist(),
+        "trays": _packed(np.array(recording.trays)),
+        "actions": [
+            {"begun": row.begun, "text": " ".join(map(str, row.action)), "origin": row.origin, "outcome": row.outcome}
+            for row in episode.actions
+        ],
+        "goal": goal_in_words(instance.goal),
+        "result": "success" if episode.failure is None else f"{episode.failure.name}: {episode.failure.reason}",
+    }
+    title = html.escape(f"{episode.instance} · {episode.planner} · seed {episode.seed}")
+    data = json.dumps(scene).replace("<", "\\u003c")
+    write_text(path, _filled(TEMPLATE.read_text(encoding="utf-8"), {"title": title, "data": data}))
+
+
+def goal_in_words(goal: Goal) -> str:
+    """What a goal asks, in one line."""
+    match goal:
+        case OnGoal():
+            asked = [f"{upper} on {under}" for upper, under in goal.on.items()]
+            asked += [f"{block} at the bottom" for block in goal.bottom]
+            return "; ".join(asked) or "nothing"
+        case PositionsGoal():
+            piles, rest = goal.stacks(), "bottom first, other blocks anywhere"
+        case StacksGoal():
+            piles, rest = {name: pile for name, pile in goal.stacks.items() if pile}, "bottom first"
+    named = "; ".join(f"{location} = {' '.join(pile)}" for location, pile in piles.items())
+    return f"{named} ({rest})" if named else "nothing"
+
+
+def _places(tabletop: Tabletop, instance: Instance) -> list[tuple[str, float, float]]:
+    """Name and place on the table [m] of what to call each location and station of the instance."""
+    deep = 0.0 if tabletop.tray is None else tabletop.tray.size[1]
+    named = [(name, slot, tabletop.side) for name, slot in tabletop.bind(instance).items()]
+    named += [(name, slot, deep) for name, slot in tabletop.bind_stations(instance).items()]
+    return [(name, *slot.point(depth / 2 + BESIDE, 0.0, "outward")) for name, slot, depth in named]
+
+
+def _filled(template: str, values: Mapping[str, str]) -> str:
+    """The template with each `{{key}}` replaced, in one pass: what is put in is not looked at again."""
+    return re.sub(r"\{\{(\w+)\}\}", lambda found: values[found[1]], template)
+
+
+def _packed(values: NDArray[np.float64]) -> str:
+    return base64.b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode("ascii")
+
+
+@cache
+def _mesh(name: str) -> NDArray[np.float64]:
+    """Triangles of a collision mesh, shape (T, 9) [m]."""
+    vertices: list[list[float]] = []
+    triangles: list[list[float]] = []
+    for line in (panda_urdf().parent / "meshes" / "collision" / f"{name}.obj").read_text().splitlines():
+        parts = line.split()
+        if parts[:1] == ["v"]:
+            vertices.append([float(value) for value in parts[1:4]])
+        elif parts[:1] == ["f"]:
+            corners = [vertices[int(part.split("/")[0]) - 1] for part in parts[1:]]
+            triangles += [[*corners[0], *second, *third] for second, third in pairwise(corners[1:])]
+    return np.array(triangles)

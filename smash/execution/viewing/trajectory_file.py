@@ -1,0 +1,57 @@
+"""The joint trajectory of an episode as a CSV file: `smash execute --trajectory FILE`.
+
+One row per sample: `time` [s] from the beginning of the episode, the seven arm joints [rad] by the names of the URDF,
+`finger_opening` [m], how far each finger is sent from the middle. Rows follow one another at even steps, also while the
+arm stands still.
+Numbers are written in full, so that a file read back holds the same values bit for bit.
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from smash.motion.robot import ARM_JOINTS
+from smash.problem.errors import MalformedFile
+
+HEADER = ("time", *ARM_JOINTS, "finger_opening")
+
+
+def write_trajectory(path: str | os.PathLike[str], samples: Iterable[tuple[float, NDArray[np.float64], float]]) -> None:
+    """Write commanded joint positions with their times.
+
+    Args:
+        path: The file; it is overwritten.
+        samples: Time [s], joints [rad], shape (7,), and opening [m], in the order of time.
+    """
+    with Path(path).open("w", newline="", encoding="ascii") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(HEADER)
+        for time, joints, opening in samples:
+            writer.writerow([repr(float(value)) for value in (time, *joints, opening)])
+
+
+def read_trajectory(
+    path: str | os.PathLike[str],
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Times [s], shape (N,), joints [rad], shape (N, 7), and openings [m], shape (N,), of a file written here.
+
+    Raises:
+        MalformedFile: The header is another, or a row is not nine numbers.
+    """
+    lines = Path(path).read_text(encoding="utf-8").splitlines()
+    if not lines or tuple(lines[0].split(",")) != HEADER:
+        raise MalformedFile(os.fspath(path), f"the first line must be {','.join(HEADER)}")
+    rows = np.empty((len(lines) - 1, len(HEADER)))
+    for number, line in enumerate(lines[1:]):
+        try:
+            rows[number] = np.array(line.split(",", len(HEADER)), dtype=np.float64).reshape(len(HEADER))
+        except ValueError:
+            problem = f"line {number + 2}: {len(HEADER)} numbers separated by commas are allowed"
+            raise MalformedFile(os.fspath(path), problem) from None
+    return rows[:, 0], rows[:, 1:-1], rows[:, -1]

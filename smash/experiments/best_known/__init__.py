@@ -1,0 +1,1 @@
+"""The list of best known costs of the open instances."""

@@ -1,0 +1,77 @@
+"""Which episodes were asked for: `RESULTS/episodes-asked.json`, one entry for each kind of question that was put."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Literal, cast
+
+import msgspec
+
+from smash.experiments.episodes.episodes import EpisodeRun, episode_runs, told_apart
+from smash.problem.errors import MalformedFile
+from smash.problem.files.documents import convert, read_bytes, write_text
+
+ASKED = "episodes-asked.json"
+
+
+class Question(msgspec.Struct, frozen=True):
+    """Every plan of these labels (of all where there are none), by these policies, under seeds 0 to `seeds` - 1.
+
+    `scene` is the name of a scene file with what tells its content from others, None for the built-in scene.
+    """
+
+    seeds: int
+    policies: list[str]
+    scene: str | None = None
+    labels: list[str] = []
+
+
+class Asked(msgspec.Struct, frozen=True):
+    """The file."""
+
+    format: Literal["smash-episodes/1"]
+    questions: list[Question]
+
+
+def note_asked(
+    results: Path, seeds: int, policies: Sequence[str], scene: os.PathLike[str] | None, labels: Sequence[str]
+) -> None:
+    """Add a question to those of a results directory; one that stands there already is not added again."""
+    before = _questions(results) or []
+    name = None if scene is None else told_apart(scene)
+    question = Question(seeds, list(policies), name, list(labels))
+    if question not in before:
+        document = Asked("smash-episodes/1", [*before, question])
+        text = msgspec.json.format(msgspec.json.encode(document), indent=1).decode()
+        write_text(results / ASKED, text + "\n")
+
+
+def asked_runs(results: Path) -> list[EpisodeRun] | None:
+    """Return every episode that was asked for, once; None where it was never noted.
+
+    Raises:
+        MalformedFile: where a file is damaged.
+    """
+    questions = _questions(results)
+    if questions is None:
+        return None
+    runs: dict[str, EpisodeRun] = {}
+    for question in questions:
+        told = None if question.scene is None else question.scene.removesuffix(".toml").removesuffix(".json")
+        seeds, policies, labels = range(question.seeds), question.policies, question.labels
+        for run in episode_runs(results, seeds, policies, labels=labels, told=told):
+            runs.setdefault(run.key, run)
+    return list(runs.values())
+
+
+def _questions(results: Path) -> list[Question] | None:
+    path = results / ASKED
+    if not path.is_file():
+        return None
+    try:
+        document = msgspec.json.decode(read_bytes(path))
+    except msgspec.DecodeError as error:
+        raise MalformedFile(str(path), f"not JSON: {error}") from None
+    return list(cast(Asked, convert(document, Asked, str(path))).questions)

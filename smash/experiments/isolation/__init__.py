@@ -1,0 +1,1 @@
+"""One run in processes of its own, with limits."""

@@ -1,0 +1,240 @@
+"""One planner call in processes of its own, with limits, seen from the caller's side.
+
+The caller may have threads (a local pool, a Dask worker): it starts a fresh interpreter, never forks. What
+the run says arrives line by line, so that a run that is stopped keeps what it had found. Every plan is judged by
+the law here, whatever planner made it.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import selectors
+import subprocess
+import sys
+import uuid
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from threading import Event
+from time import monotonic
+from typing import Any
+
+from smash.experiments.isolation.job import STARTUP_LIMIT, Job, Report, grace
+from smash.planners.protocol import OnIncumbent
+from smash.problem.errors import SmashError
+from smash.problem.files.plans import action_from_list
+from smash.problem.model import Action
+from smash.problem.plan import Incumbent, Status
+from smash.problem.rules import Law, Verdict
+from smash.records.outcomes import OutcomeName
+
+MARK = "SMASH_RUN"
+"""Environment variable that every process of a run inherits, with a value of the run's own."""
+_PATIENCE = 20.0
+"""Seconds beyond all limits after which a guardian that says nothing is given up."""
+
+
+def run_isolated(job: Job, on_incumbent: OnIncumbent | None = None, stop: Event | None = None) -> Report:
+    """Run one job to its end and report; when this returns or raises, all of its processes are gone.
+
+    Args:
+        job: what to run, and its limits.
+        on_incumbent: called with every better legal plan as it arrives.
+        stop: set from outside, it ends the run, whose outcome is then `interrupted`.
+    """
+    heard = _Heard(job, on_incumbent)
+    with _guardian(job) as guardian:
+        for line in _lines(guardian, job, stop):
+            heard.take(json.loads(line))
+    return heard.report(interrupted=stop is not None and stop.is_set())
+
+
+@contextmanager
+def _guardian(job: Job) -> Iterator[subprocess.Popen[bytes]]:
+    mark = uuid.uuid4().hex
+    here = "import sys; sys.path[:] = {!r}; from smash.experiments.isolation.guardian import main; main()"
+    guardian = subprocess.Popen(
+        [sys.executable, "-P", "-c", here.format([os.path.abspath(entry) for entry in sys.path])],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        env={**os.environ, MARK: mark},
+        start_new_session=True,
+    )
+    assert guardian.stdin is not None
+    try:
+        with suppress(BrokenPipeError):
+            guardian.stdin.write(json.dumps(job.document()).encode() + b"\n")
+            guardian.stdin.flush()
+        yield guardian
+    finally:
+        with suppress(BrokenPipeError):
+            guardian.stdin.close()
+        try:
+            clean = guardian.wait(timeout=10) == 0
+        except subprocess.TimeoutExpired:
+            guardian.kill()
+            guardian.wait()
+            clean = False
+        if guardian.stdout is not None:
+            guardian.stdout.close()
+        if not clean:
+            _end_marked(mark)
+
+
+def _lines(guardian: subprocess.Popen[bytes], job: Job, stop: Event | None) -> Iterator[bytes]:
+    """Yield what the guardian says until it ends; where `stop` is set, close its input and hear it out."""
+    assert guardian.stdin is not None
+    assert guardian.stdout is not None
+    last = monotonic() + STARTUP_LIMIT + job.budget + grace(job.budget) + _PATIENCE
+    unread = b""
+    with selectors.DefaultSelector() as selector:
+        selector.register(guardian.stdout, selectors.EVENT_READ)
+        while monotonic() < last:
+            if stop is not None and stop.is_set() and not guardian.stdin.closed:
+                guardian.stdin.close()
+                last = monotonic() + _PATIENCE
+            if not selector.select(0.1):
+                continue
+            chunk = os.read(guardian.stdout.fileno(), 1 << 16)
+            if not chunk:
+                return
+            *lines, unread = (unread + chunk).split(b"\n")
+            yield from lines
+
+
+def _end_marked(mark: str) -> None:
+    """End what a killed guardian has left behind, found by the mark in its environment."""
+    import psutil
+
+    for process in psutil.process_iter():
+        with suppress(psutil.Error, OSError):
+            if process.environ().get(MARK) == mark:
+                process.kill()
+
+
+class _Heard:
+    """Puts the lines of a run together, judging each plan."""
+
+    def __init__(self, job: Job, on_incumbent: OnIncumbent | None) -> None:
+        self._job = job
+        self._law = Law(job.instance, job.options)
+        self._tell = on_incumbent
+        self._best: tuple[Action, ...] | None = None
+        self._cost: int | None = None
+        self._trace: list[Incumbent] = []
+        self._proof: Mapping[str, Any] = {}
+        self._refusal: Verdict | None = None
+        self._answer: Mapping[str, Any] | None = None
+        self._failure: Mapping[str, Any] | None = None
+        self._ended: Mapping[str, Any] | None = None
+
+    def take(self, message: Mapping[str, Any]) -> None:
+        """Take one line."""
+        match message["kind"]:
+            case "incumbent":
+                self._plan(message["actions"], message["cost"], message["seconds"], self._job.planner)
+            case "bound":
+                if message["bound"] > self._proof.get("lower_bound", -1):
+                    self._proof = {"lower_bound": message["bound"], "bound_origin": message["origin"]}
+            case "result":
+                self._answer = message
+                self._take_answer(message)
+            case "failed":
+                self._failure = message
+            case "ended":
+                self._ended = message
+
+    def report(self, interrupted: bool) -> Report:
+        """Return the report, once nothing more is to come.
+
+        Raises:
+            SmashError: where the planner's name or an option is wrong.
+        """
+        outcome, reason = self._outcome(interrupted)
+        if outcome == "malformed":
+            raise SmashError(reason)
+        answer = self._answer or {}
+        ended = self._ended or {}
+        refused = outcome == "refused"
+        proof = {} if self._refusal is not None else self._answer or self._proof
+        status: Status = "unknown" if self._best is None else "feasible"
+        if not refused and answer.get("status") in ("optimal", "infeasible"):
+            status = answer["status"]
+        elif self._best is not None and proof.get("lower_bound") == self._cost:
+            status = "optimal"
+        verdict = self._refusal
+        if verdict is None and self._best is not None:
+            verdict = Verdict(True)
+        return Report(
+            outcome=outcome,
+            status=status,
+            reason=reason,
+            actions=self._best,
+            lower_bound=proof.get("lower_bound"),
+            bound_origin=proof.get("bound_origin"),
+            incumbents=tuple(self._trace),
+            verdict=verdict,
+            details=answer.get("details", {}),
+            wall_seconds=ended.get("wall_seconds"),
+            cpu_seconds=ended.get("cpu_seconds"),
+            memory_mib=ended.get("memory_mib"),
+            log=ended.get("log", ""),
+        )
+
+    def _take_answer(self, answer: Mapping[str, Any]) -> None:
+        origins = {cost: origin for _, cost, origin in answer["incumbents"]}
+        self._trace = [entry._replace(origin=origins.get(entry.cost, entry.origin)) for entry in self._trace]
+        actions, status, bound = answer["actions"], answer["status"], answer["lower_bound"]
+        if (actions is None) != (status in ("infeasible", "unknown")):
+            return self._refuse(f"status {status} {'without' if actions is None else 'with'} a plan")
+        if actions is not None:
+            stated = answer["cost"]
+            times = [at for at, cost, _ in answer["incumbents"] if cost == stated]
+            at = min([answer["seconds"], *(time for time in times if time >= 0)])
+            self._plan(actions, stated, at, origins.get(stated, self._job.planner))
+        best = self._cost
+        if status == "infeasible" and best is not None:
+            return self._refuse("status infeasible, yet it had reported a legal plan")
+        if best is not None and bound is not None and bound > best:
+            return self._refuse(f"lower bound {bound}, yet there is a legal plan of {best}")
+        if status == "optimal" and actions is not None and (answer["cost"] != best or bound not in (None, best)):
+            return self._refuse(f"status optimal at cost {answer['cost']}, best legal plan {best}, lower bound {bound}")
+        return None
+
+    def _plan(self, entries: list[Any], cost: int, seconds: float, origin: str) -> None:
+        """Judge a plan, and keep it where it is legal and the best."""
+        try:
+            actions = tuple(action_from_list(entry, "plan") for entry in entries)
+        except SmashError as error:
+            return self._refuse(str(error))
+        verdict = self._law.check(actions)
+        if not verdict.accepted:
+            self._refusal = self._refusal or verdict
+        elif cost != verdict.cost:
+            self._refuse(f"its cost says {cost}, the law counts {verdict.cost}")
+        elif self._cost is None or cost < self._cost:
+            self._best, self._cost = actions, cost
+            self._trace.append(Incumbent(seconds, cost, origin))
+            if self._tell is not None:
+                self._tell(seconds, cost, actions)
+        return None
+
+    def _refuse(self, reason: str) -> None:
+        self._refusal = self._refusal or Verdict(False, reason)
+
+    def _outcome(self, interrupted: bool) -> tuple[OutcomeName, str]:
+        if self._cost is not None and self._proof.get("lower_bound", 0) > self._cost:
+            self._refuse(f"lower bound {self._proof['lower_bound']}, yet there is a legal plan of {self._cost}")
+        if self._failure is not None:
+            return self._failure["outcome"], self._failure["reason"]
+        if self._refusal is not None:
+            return "refused", str(self._refusal)
+        if self._answer is not None:
+            status: Status = self._answer["status"]
+            return ("budget-spent" if status == "unknown" else status), ""
+        if interrupted:
+            return "interrupted", "stopped from outside"
+        if self._ended is not None:
+            return self._ended["outcome"], self._ended["reason"]
+        return "crashed", "the process that guards the run was killed"

@@ -1,0 +1,232 @@
+"""The guardian: a small process between a run and whoever asked for it, which no planner outlives.
+
+It forks the planner's process, passes on the JSON lines that this one says, and watches three limits: wall
+time (budget and grace), memory (resident set of the whole tree) and start-up. It ends the whole tree (Fast
+Downward, Java, whatever was started, in sessions of their own too) when a limit is hit, when the planner
+has answered, and when its own standard input closes: that is how a caller stops it, and what the kernel
+does where the caller is killed. If the guardian itself is killed, the planner's process dies with it.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import json
+import os
+import resource
+import selectors
+import signal
+import sys
+import tempfile
+from time import monotonic, sleep
+from types import FrameType
+from typing import TYPE_CHECKING, Any, BinaryIO, NoReturn
+
+from smash.experiments.isolation.job import STARTUP_LIMIT, Job, grace
+from smash.experiments.isolation.lifetime import end_with_parent, prctl
+from smash.experiments.isolation.solving import solve
+
+if TYPE_CHECKING:
+    import psutil
+
+SAMPLING = 0.1
+"""Seconds between two looks at the tree's memory."""
+SAID_LINES = 20
+
+_PR_SET_CHILD_SUBREAPER = 36
+
+
+def main() -> None:
+    """Read one job (a JSON line) from standard input, run it, and write what happens to standard output."""
+    signal.signal(signal.SIGTERM, _leave)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    job = Job.from_document(json.loads(sys.stdin.buffer.readline()))
+    prctl(_PR_SET_CHILD_SUBREAPER, 1)
+    with tempfile.TemporaryDirectory(prefix="smash-run-", ignore_cleanup_errors=True) as scratch:
+        os.environ["TMPDIR"] = scratch
+        tempfile.tempdir = None
+        with open(os.path.join(scratch, "said.txt"), "w+b") as said:
+            pipe, planner = _start(job, said)
+            watch = _Watch(job, planner, pipe, said)
+            try:
+                watch.run()
+            finally:
+                watch.end_all()
+
+
+def _leave(signum: int, frame: FrameType | None) -> NoReturn:
+    raise SystemExit(128 + signum)
+
+
+def _start(job: Job, said: BinaryIO) -> tuple[int, int]:
+    """Fork the planner's process; return the pipe on which it talks and its process id."""
+    reading, writing = os.pipe()
+    guardian = os.getpid()
+    planner = os.fork()
+    if planner:
+        os.close(writing)
+        os.set_blocking(reading, False)
+        return reading, planner
+    end_with_parent(guardian)
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, signal.SIG_DFL)
+    os.close(reading)
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    for source, target in ((nothing, 0), (said.fileno(), 1), (said.fileno(), 2)):
+        os.dup2(source, target)
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    faulthandler.enable()
+    solve(job, writing)
+
+
+class _Watch:
+    """Passes on what the planner says, and ends it at its limits."""
+
+    def __init__(self, job: Job, planner: int, pipe: int, said: BinaryIO) -> None:
+        self.job = job
+        self.planner = planner
+        self.pipe = pipe
+        self.said = said
+        self.unread = b""
+        self.started: float | None = None
+        self.deadline = monotonic() + STARTUP_LIMIT
+        self.peak = 0.0
+        self.cpu: float | None = None
+        self.answered = False
+        self.status: int | None = None
+
+    def run(self) -> None:
+        """Watch until the planner has answered, ended or hit a limit; then say how it ended."""
+        with selectors.DefaultSelector() as selector:
+            selector.register(sys.stdin.fileno(), selectors.EVENT_READ)
+            selector.register(self.pipe, selectors.EVENT_READ)
+            next_look = monotonic()
+            while True:
+                pause = max(0.0, min(self.deadline, next_look) - monotonic())
+                ready = {key.fd for key, _ in selector.select(pause)}
+                if sys.stdin.fileno() in ready and not os.read(sys.stdin.fileno(), 4096):
+                    return
+                if self.pipe in ready and not self._pass_on():
+                    selector.unregister(self.pipe)
+                    self._reap(patience=1.0)
+                if monotonic() >= next_look:
+                    self._reap()
+                    if self._look_at_memory() > self.job.memory:
+                        return self._ended("memory", f"{self.peak:.0f} MiB used, the limit is {self.job.memory}")
+                    next_look = monotonic() + SAMPLING
+                if self.answered or self.status is not None:
+                    while self._pass_on():
+                        pass
+                    self._reap(patience=0.5)
+                    return self._ended(*(("", "") if self.answered else self._abnormal()))
+                if monotonic() >= self.deadline:
+                    return self._ended(*self._late())
+
+    def end_all(self) -> None:
+        """Kill every process below the guardian; orphans come back to it, so nothing escapes by forking twice."""
+        import psutil
+
+        for _ in range(200):
+            below = psutil.Process().children(recursive=True)
+            for process in below:
+                _kill(process)
+            self._reap(patience=0.02)
+            try:
+                while os.waitpid(-1, os.WNOHANG)[0]:
+                    pass
+            except ChildProcessError:
+                return
+
+    def _pass_on(self) -> bool:
+        """Pass on what the planner has said since; False where there is nothing more (or an answer already)."""
+        if self.answered:
+            return False
+        try:
+            chunk = os.read(self.pipe, 1 << 16)
+        except BlockingIOError:
+            return False
+        *lines, self.unread = (self.unread + chunk).split(b"\n")
+        for line in lines:
+            kind = line[:40]
+            if b'"solving"' in kind:
+                self.started = monotonic()
+                self.deadline = self.started + self.job.budget + grace(self.job.budget)
+            self.answered = self.answered or b'"result"' in kind or b'"failed"' in kind
+            _say(line)
+        return bool(chunk)
+
+    def _look_at_memory(self) -> float:
+        """Return the resident set of the planner's tree [MiB], and keep its peak."""
+        import psutil
+
+        total = 0
+        try:
+            for process in psutil.Process().children(recursive=True):
+                try:
+                    total += process.memory_info().rss
+                except psutil.Error:
+                    continue
+        except psutil.Error:
+            return 0.0
+        self.peak = max(self.peak, total / 2**20)
+        return total / 2**20
+
+    def _reap(self, patience: float = 0.0) -> None:
+        """Collect the planner's process if it has ended, waiting for it up to `patience` seconds."""
+        until = monotonic() + patience
+        while self.status is None:
+            try:
+                done, status, usage = os.wait4(self.planner, os.WNOHANG)
+            except ChildProcessError:
+                return
+            if done:
+                self.status = status
+                self.cpu = usage.ru_utime + usage.ru_stime
+                unit = 2**20 if sys.platform == "darwin" else 2**10
+                self.peak = max(self.peak, usage.ru_maxrss / unit)
+            elif monotonic() >= until:
+                return
+            else:
+                sleep(0.002)
+
+    def _late(self) -> tuple[str, str]:
+        if self.started is None:
+            return "crashed", f"not ready to plan after {STARTUP_LIMIT:.0f} s"
+        allowed = self.job.budget + grace(self.job.budget)
+        return "over-budget", f"still running after {allowed:.1f} s on a budget of {self.job.budget:g} s: stopped"
+
+    def _abnormal(self) -> tuple[str, str]:
+        code = os.waitstatus_to_exitcode(self.status or 0)
+        if code < 0:
+            return "crashed", f"its process was killed by {signal.Signals(-code).name}"
+        return "crashed", f"its process ended with exit code {code} and no answer"
+
+    def _ended(self, outcome: str, reason: str) -> None:
+        wall = None if self.started is None else monotonic() - self.started
+        self.end_all()
+        self.said.seek(max(0, self.said.seek(0, os.SEEK_END) - 4000))
+        lines = self.said.read().decode(errors="replace").splitlines()[-SAID_LINES:]
+        message: dict[str, Any] = {
+            "kind": "ended",
+            "outcome": outcome,
+            "reason": reason,
+            "wall_seconds": wall,
+            "cpu_seconds": self.cpu,
+            "memory_mib": round(self.peak, 1),
+            "log": "\n".join(lines),
+        }
+        _say(json.dumps(message).encode())
+
+
+def _kill(process: psutil.Process) -> None:
+    import psutil
+
+    try:
+        process.kill()
+    except psutil.Error:
+        return
+
+
+def _say(line: bytes) -> None:
+    left = memoryview(line + b"\n")
+    while left:
+        left = left[os.write(sys.stdout.fileno(), left) :]

@@ -1,0 +1,1 @@
+"""Every table and figure from nothing, stage by stage, with a manifest."""

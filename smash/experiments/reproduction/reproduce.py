@@ -1,0 +1,294 @@
+"""A reproduction: every step once, in order, each with a record of what it was made from and what it made.
+
+`OUT/records/STEP.json` says how far a step is. A step that is done and whose inputs have not changed since is not run
+again; one that was stopped or killed is continued by the resume of its own commands; one whose inputs have changed is
+begun from nothing, and what it had made before is set aside in `OUT/.stale`.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import partial
+from pathlib import Path
+from threading import Event
+from time import monotonic
+from typing import Any, Literal, Protocol, cast
+
+import msgspec
+
+from smash.experiments.environment import commit, load
+from smash.experiments.isolation.lifetime import end_with_parent
+from smash.experiments.reproduction.stages import MadeFrom, Step, Steps, code_hash, file_hash, made_from
+from smash.problem.files.documents import convert, read_bytes, write_text
+
+HEARTBEAT = 10.0
+"""Seconds between two notes of how long a step has run, so that a kill loses no more of its time."""
+PATIENCE = 60.0
+"""Seconds that a command has to end by itself once it is asked to."""
+
+STALE = ".stale"
+"""Hidden, so that whoever reads all records below the directory passes it by."""
+
+State = Literal["begun", "failed", "done"]
+Plan = Literal["done", "kept", "to do", "continued", "stale", "not run"]
+"""`kept`: done, and kept although something has changed; `stale`: done once, and made anew."""
+
+
+class Product(msgspec.Struct, frozen=True):
+    """One file that a step made."""
+
+    sha256: str
+    bytes: int
+
+
+class Load(msgspec.Struct):
+    """The machine's load average over a minute: at the first start, the mean of all samples, the most."""
+
+    before: float
+    mean: float
+    most: float
+    samples: int = 1
+
+    def add(self, sample: float) -> None:
+        """Take one more sample."""
+        self.mean = round((self.mean * self.samples + sample) / (self.samples + 1), 3)
+        self.samples += 1
+        self.most = max(self.most, sample)
+
+
+class Record(msgspec.Struct):
+    """`OUT/records/STEP.json`: `seconds` and `load` are over all `starts` of the step."""
+
+    step: str
+    state: State
+    made_from: MadeFrom
+    commit: dict[str, Any]
+    started: str
+    load: Load
+    ended: str | None = None
+    seconds: float = 0.0
+    starts: int = 0
+    problem: str = ""
+    exit_code: int = 0
+    products: dict[str, Product] = {}
+
+    def products_hash(self) -> str:
+        """Return one hash of all products."""
+        return "".join(f"{name} {product.sha256}\n" for name, product in sorted(self.products.items()))
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A step, what is to be done about it, and why in a few words."""
+
+    step: Step
+    plan: Plan
+    why: str
+    record: Record | None
+
+
+class Display(Protocol):
+    """Whoever shows how a reproduction goes."""
+
+    def begun(self, planned: Planned, log: Path) -> None:
+        """A step has started."""
+
+    def running(self, seconds: float) -> None:
+        """The step still runs (asked several times a second)."""
+
+    def ended(self, record: Record) -> None:
+        """The step has ended."""
+
+
+class Reproduction:
+    """The steps of one file, made in one directory."""
+
+    def __init__(self, steps: Steps, here: Path, out: Path, keep_stale: bool = False) -> None:
+        self.steps = steps
+        self.here = here.resolve()
+        self.out = out.resolve()
+        self.keep_stale = keep_stale
+        self._code = code_hash()
+
+    def plan(self) -> list[Planned]:
+        """Return what is to be done about each step."""
+        planned: dict[str, Planned] = {}
+        for step in self.steps.steps:
+            planned[step.name] = self._plan(step, planned)
+        return list(planned.values())
+
+    def run(self, display: Display, stop: Event) -> list[Planned]:
+        """Do what is to be done, step by step; return the steps as they stand afterwards."""
+        done: dict[str, Planned] = {}
+        for step in self.steps.steps:
+            planned = self._plan(step, done, running=True)
+            if planned.plan in ("to do", "continued", "stale") and not stop.is_set():
+                display.begun(planned, self.log(step))
+                record = self._run(planned, done, display, stop)
+                display.ended(record)
+                planned = self._plan(step, done, running=True)
+            done[step.name] = planned
+        return list(done.values())
+
+    def log(self, step: Step) -> Path:
+        """Return where the output of a step's commands goes."""
+        return self.out / "logs" / f"{step.name}.log"
+
+    def _plan(self, step: Step, before: dict[str, Planned], running: bool = False) -> Planned:
+        record = self._read(step)
+        if lacking := step.lacking():
+            return Planned(step, "not run", f"not installed: {', '.join(lacking)}", record)
+        unmade = [name for name in step.after if before[name].plan not in ("done", "kept", "not run")]
+        if running and step.after and not any(before[name].plan in ("done", "kept") for name in step.after):
+            return Planned(step, "not run", f"there is nothing of {', '.join(step.after)}", record)
+        if record is None:
+            return Planned(step, "to do", f"after {', '.join(unmade)}" if unmade else "", None)
+        changes = record.made_from.changes(self._made_from(step, before))
+        if record.state != "done":
+            if changes and not self.keep_stale:
+                return Planned(step, "stale", "; ".join(changes), record)
+            return Planned(step, "continued", record.problem or "it was killed", record)
+        if not running:
+            changes += [f"{name} is to be made anew" for name in unmade]
+        missing, changed = self._damaged(record)
+        if changed or (changes and not self.keep_stale):
+            return Planned(step, "stale", "; ".join(changes + changed), record)
+        if missing:
+            return Planned(step, "continued", "; ".join(missing), record)
+        return Planned(step, "kept" if changes else "done", "; ".join(changes), record)
+
+    def _made_from(self, step: Step, before: dict[str, Planned]) -> MadeFrom:
+        uses = {name: made.products_hash() for name in step.after if (made := before[name].record) is not None}
+        return made_from(step, self.here, self._code, uses)
+
+    def _damaged(self, record: Record) -> tuple[list[str], list[str]]:
+        """Return in words the products that are missing, and those that somebody has changed."""
+        there = {name: self.out / name for name in record.products if (self.out / name).is_file()}
+        changed = [name for name, file in there.items() if file_hash(file) != record.products[name].sha256]
+        missing = [f"{name} is missing" for name in record.products if name not in there]
+        return missing, [f"{name} is not as it was made" for name in changed]
+
+    def _run(self, planned: Planned, before: dict[str, Planned], display: Display, stop: Event) -> Record:
+        step = planned.step
+        made, now = self._made_from(step, before), datetime.now(UTC).isoformat(timespec="seconds")
+        record = planned.record
+        if planned.plan != "continued" or record is None:
+            self._set_aside(step)
+            record = Record(step.name, "begun", made, commit(), now, Load(load(), load(), load()))
+        record.starts += 1
+        record.state, record.problem, record.exit_code, record.ended = "begun", "", 0, None
+        (self.out / step.name).mkdir(parents=True, exist_ok=True)
+        self._write(record)
+        self._run_commands(step, record, display, stop)
+        if not record.problem:
+            record.products = self._products(step, record)
+        if not stop.is_set():
+            record.state = "failed" if record.problem else "done"
+        record.ended = datetime.now(UTC).isoformat(timespec="seconds")
+        self._write(record)
+        return record
+
+    def _run_commands(self, step: Step, record: Record, display: Display, stop: Event) -> None:
+        log = self.log(step)
+        log.parent.mkdir(parents=True, exist_ok=True)
+        for words, text in zip(step.words(self.out, self.here), step.commands, strict=True):
+            with open(log, "a", encoding="utf-8") as said:
+                said.write(f"$ {text}\n")
+                said.flush()
+                code = _run_command(words, said.fileno(), record, lambda: self._write(record), display, stop)
+            if stop.is_set():
+                record.problem = "it was stopped"
+                return
+            if code:
+                record.exit_code = code
+                record.problem = f"`{text}` ended with exit code {code}: {last_line(log)}"
+                return
+
+    def _products(self, step: Step, record: Record) -> dict[str, Product]:
+        products = {}
+        for pattern in step.products:
+            files = [file for file in sorted(self.out.glob(pattern)) if file.is_file()]
+            if not files:
+                record.problem = f"it made no {pattern}"
+            for file in files:
+                name = file.relative_to(self.out).as_posix()
+                products[name] = Product(file_hash(file), file.stat().st_size)
+        return products
+
+    def _set_aside(self, step: Step) -> None:
+        """Move what the step had made before to a folder of its own, its record and log with it."""
+        parts = [self.out / step.name, self._path(step.name), self.log(step)]
+        parts = [part for part in parts if part.exists()]
+        if not parts:
+            return
+        number = 1
+        while (aside := self.out / STALE / f"{step.name}-{number}").exists():
+            number += 1
+        aside.mkdir(parents=True)
+        for part in parts:
+            part.rename(aside / part.name)
+
+    def _path(self, name: str) -> Path:
+        return self.out / "records" / f"{name}.json"
+
+    def _read(self, step: Step) -> Record | None:
+        path = self._path(step.name)
+        if not path.is_file():
+            return None
+        try:
+            document = msgspec.json.decode(read_bytes(path))
+        except msgspec.DecodeError:
+            return None  # cut off by a full disk: the step is done anew
+        return cast(Record, convert(document, Record, str(path)))
+
+    def _write(self, record: Record) -> None:
+        path = self._path(record.step)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_text(path, msgspec.json.format(msgspec.json.encode(record), indent=1).decode() + "\n")
+
+
+def _run_command(
+    words: Sequence[str], said: int, record: Record, note: Callable[[], None], display: Display, stop: Event
+) -> int:
+    """Run one command to its end and keep the record's time; it is asked to end where `stop` is set."""
+    process = subprocess.Popen(
+        words,
+        stdin=subprocess.DEVNULL,
+        stdout=said,
+        stderr=said,
+        start_new_session=True,
+        preexec_fn=partial(end_with_parent, os.getpid()),
+    )
+    counted = noted = monotonic()
+    asked: float | None = None
+    while True:
+        try:
+            code: int | None = process.wait(timeout=0.25)
+        except subprocess.TimeoutExpired:
+            code = None
+        now = monotonic()
+        record.seconds, counted = record.seconds + now - counted, now
+        if code is not None:
+            return code
+        if now - noted > HEARTBEAT:
+            noted = now
+            record.load.add(load())
+            note()
+        if stop.is_set() and asked is None:
+            process.terminate()
+            asked = now
+        if asked is not None and now - asked > PATIENCE:
+            process.kill()
+        display.running(record.seconds)
+
+
+def last_line(log: Path) -> str:
+    """Return the last line of words that the commands have printed; empty where there is none yet."""
+    with open(log, "rb") as said:
+        said.seek(max(0, said.seek(0, 2) - 2000))
+        lines = said.read().decode(errors="replace").splitlines()
+    return next((line.strip() for line in reversed(lines) if any(map(str.isalnum, line))), "")

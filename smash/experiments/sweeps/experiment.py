@@ -1,0 +1,297 @@
+"""An experiment: a short TOML file, checked whole before anything runs, and the list of runs that it means.
+
+One anytime run at the largest budget stands for every smaller one, since its incumbents carry their times. A
+planner that is `budget_dependent` (see `smash.planners.protocol`) is run at each budget by itself. To check the
+reading, `cutoff_sample` runs of each other planner are repeated with every smaller budget as the real limit.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Literal, TypeVar, cast
+
+import msgspec
+
+from smash.experiments.isolation.job import DEFAULT_MEMORY, Job
+from smash.planners.protocol import MOST_THREADS, SolveOptions
+from smash.planners.registry import get_planner, why_unknown
+from smash.problem.actions.registry import FAMILY
+from smash.problem.errors import MalformedFile, Unsupported
+from smash.problem.files.documents import convert, parse_toml, read_bytes
+from smash.problem.files.instances import instance_document
+from smash.problem.model import Instance, PlanOptions
+from smash.problem.sets.suites import read_suite, suite_names, with_buffers
+
+RunKind = Literal["anytime", "budget", "cutoff"]
+FURTHER = tuple(name for name in FAMILY if name != "topple")
+"""Aggregating actions that a variant can leave out by `-no-NAME`."""
+"""`anytime`: stands for every smaller budget too; `budget`: for its own alone; `cutoff`: checks that reading."""
+
+INSTANCES = "instances"
+SETS = "sets.json"
+"""`RESULTS/instances/sets.json`: set -> its folder beside the list, in a directory that holds its own experiment."""
+
+T = TypeVar("T")
+Expect = Callable[[bool, str, str], None]
+"""`expect(holds, part, problem)` refuses the file where something does not hold."""
+
+
+class PlannerEntry(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """One `[[planners]]` table: a planner with its settings; the grid's fields may be overridden for it alone."""
+
+    name: str
+    label: str | None = None
+    warm_start: str | None = None
+    horizon: int | None = None
+    threads: int = 1
+    suites: list[str] | None = None
+    instances: int | None = None
+    buffers: list[int] | None = None
+    budgets: list[float] | None = None
+    variants: list[str] | None = None
+    cutoff_sample: int | None = None
+
+
+class Experiment(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """An experiment file. `instances` takes the first so many of each suite; without `buffers` they stay as filed.
+
+    `budgets` are seconds, `memory` MiB over a run's processes, `variants` are `topple`, `no-topple` or
+    `max-topple-M`, each perhaps followed by `-no-carry` and the like.
+    """
+
+    name: str
+    suites: list[str]
+    planners: list[PlannerEntry]
+    budgets: list[float] = msgspec.field(default_factory=lambda: [30.0])
+    buffers: list[int] | None = None
+    instances: int | None = None
+    variants: list[str] = msgspec.field(default_factory=lambda: ["topple", "no-topple"])
+    seeds: list[int] = msgspec.field(default_factory=lambda: [0])
+    memory: int = DEFAULT_MEMORY
+    jobs: int = 1
+    cutoff_sample: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One run of an experiment. `key` names it for good: equal keys mean equal jobs."""
+
+    key: str
+    experiment: str
+    label: str
+    suite: str
+    variant: str
+    kind: RunKind
+    budgets: tuple[float, ...]
+    job: Job
+
+
+def read_experiment(path: str | os.PathLike[str]) -> Experiment:
+    """Read an experiment file; suites that are directories are found beside it.
+
+    Raises:
+        MalformedFile: with one line that says where and what is allowed.
+    """
+    where = os.fspath(path)
+    experiment = cast(Experiment, convert(parse_toml(read_bytes(path), where), Experiment, where))
+    check_experiment(experiment, where)
+    return experiment
+
+
+def check_experiment(experiment: Experiment, where: str = "experiment") -> None:
+    """Refuse settings that cannot be run.
+
+    Raises:
+        MalformedFile: with one line that says where and what is allowed.
+    """
+
+    def expect(holds: bool, part: str, problem: str) -> None:
+        if not holds:
+            raise MalformedFile(where, f"`{part}`: {problem}")
+
+    plain = re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9._-]*", experiment.name) is not None
+    expect(plain, "name", f"{experiment.name!r} is no plain file name (letters, digits, `.`, `_`, `-`)")
+    expect(bool(experiment.planners), "planners", "empty; at least one is needed")
+    expect(experiment.memory >= 1, "memory", f"{experiment.memory} is not allowed; MiB, 1 and more")
+    expect(experiment.jobs >= 1, "jobs", f"{experiment.jobs} is not allowed; 1 and more")
+    _expect_list(expect, "seeds", experiment.seeds, lambda seed: seed >= 0, "0 and more")
+    _check_grid(expect, "", experiment)
+    settings: dict[str, tuple[object, ...]] = {}
+    for index, entry in enumerate(experiment.planners):
+        part = f"planners[{index}]"
+        for name in filter(None, (entry.name, entry.warm_start)):
+            unknown = why_unknown(name)
+            expect(unknown is None, part, unknown or "")
+        few = 1 <= entry.threads <= MOST_THREADS
+        expect(few, f"{part}.threads", f"{entry.threads} is not allowed; 1 to {MOST_THREADS}")
+        expect(entry.horizon is None or entry.horizon >= 1, f"{part}.horizon", f"{entry.horizon} is not allowed")
+        _check_grid(expect, f"{part}.", entry)
+        label, chosen = entry.label or entry.name, (entry.name, entry.warm_start, entry.horizon, entry.threads)
+        expect(bool(label.strip()), f"{part}.label", "empty; a name for the pictures is needed")
+        other = settings.setdefault(label, chosen)
+        expect(other == chosen, f"{part}.label", f"{label!r} is also the label of other settings; give it another")
+
+
+def _check_grid(expect: Expect, at: str, grid: Experiment | PlannerEntry) -> None:
+    _expect_list(expect, f"{at}suites", grid.suites, lambda suite: suite != "", "a set's name or a directory")
+    _expect_list(expect, f"{at}budgets", grid.budgets, lambda s: 0 < s <= 1e9, "seconds above 0")
+    _expect_list(expect, f"{at}buffers", grid.buffers, lambda count: 0 <= count <= 10_000, "0 and more")
+    further = ", ".join(f"`-no-{name}`" for name in FURTHER)
+    allowed = f"`topple`, `no-topple` or `max-topple-M`, each perhaps followed by {further}"
+    _expect_list(expect, f"{at}variants", grid.variants, lambda v: variant_options(v) is not None, allowed)
+    few, sample = grid.instances, grid.cutoff_sample
+    expect(few is None or few >= 1, f"{at}instances", f"{few} is not allowed; 1 and more")
+    expect(sample is None or sample >= 0, f"{at}cutoff_sample", f"{sample} is not allowed; 0 and more")
+
+
+def _expect_list(expect: Expect, part: str, values: list[T] | None, fits: Callable[[T], bool], allowed: str) -> None:
+    if values is None:
+        return
+    expect(bool(values), part, "empty; at least one is needed")
+    for value in values:
+        expect(fits(value), part, f"{value!r} is not allowed; {allowed}")
+        expect(values.count(value) == 1, part, f"{value!r} stands twice")
+
+
+def variant_options(variant: str) -> PlanOptions | None:
+    """Return what a variant's name allows a plan to do, or None where it is no variant."""
+    parts = re.fullmatch(
+        rf"(topple|no-topple|max-topple-([1-9][0-9]{{0,5}}))((?:-no-(?:{'|'.join(FURTHER)}))*)", variant
+    )
+    if parts is None:
+        return None
+    without = tuple(parts[3].split("-no-")[1:])
+    return PlanOptions(parts[1] != "no-topple", int(parts[2]) if parts[2] else None, without=without)
+
+
+def experiment_runs(experiment: Experiment, base: Path = Path()) -> list[Run]:
+    """Return every run of a checked experiment, instance by instance, so that a part of them is a fair sample.
+
+    Args:
+        experiment: the experiment.
+        base: where suites that are directories are looked for.
+
+    Raises:
+        MalformedFile: where a suite or an instance is refused, a run stands twice.
+    """
+    runs: dict[str, tuple[int, Run]] = {}
+    for entry in experiment.planners:
+        planned = list(_entry_runs(experiment, entry, base))
+        sample = experiment.cutoff_sample if entry.cutoff_sample is None else entry.cutoff_sample
+        anytime = sorted((run.key, index, run) for index, run in planned if run.kind == "anytime")
+        planned += [(index, cut) for _, index, run in anytime[:sample] for cut in _cutoffs(run)]
+        for index, run in planned:
+            if run.key in runs:
+                problem = f"{run.label!r} meets {run.job.instance.name!r} of {run.suite!r} twice with equal settings"
+                raise MalformedFile(experiment.name, f"`planners`: {problem}")
+            runs[run.key] = (index, run)
+    return [run for _, run in sorted(runs.values(), key=lambda pair: pair[0])]
+
+
+def _entry_runs(experiment: Experiment, entry: PlannerEntry, base: Path) -> Iterator[tuple[int, Run]]:
+    """Yield (index of the instance in its suite, run) over the grid of one planner."""
+    budgets = sorted(entry.budgets or experiment.budgets)
+    kind: RunKind = "budget" if budget_dependent(entry.name) else "anytime"
+    few = entry.instances or experiment.instances
+    counts: list[int | None] = list(entry.buffers or experiment.buffers or []) or [None]
+    for suite in entry.suites or experiment.suites:
+        for index, filed in enumerate(_instances(suite, base)[:few]):
+            for count in counts:
+                instance = filed if count is None else with_buffers(filed, count)
+                for variant in entry.variants or experiment.variants:
+                    for seed in experiment.seeds:
+                        options = _options(entry, variant, seed)
+                        for budget in budgets if kind == "budget" else budgets[-1:]:
+                            stands_for = (budget,) if kind == "budget" else tuple(budgets)
+                            job = Job(entry.name, instance, options, float(budget), experiment.memory)
+                            yield (
+                                index,
+                                _run(experiment, entry.label or entry.name, suite, variant, kind, stands_for, job),
+                            )
+
+
+def _options(entry: PlannerEntry, variant: str, seed: int) -> SolveOptions:
+    allowed = variant_options(variant)
+    assert allowed is not None
+    return SolveOptions(
+        allowed.topple,
+        allowed.max_topple,
+        entry.warm_start,
+        entry.horizon,
+        entry.threads,
+        seed,
+        without=allowed.without,
+    )
+
+
+def _run(
+    experiment: Experiment, label: str, suite: str, variant: str, kind: RunKind, budgets: tuple[float, ...], job: Job
+) -> Run:
+    return Run(_key(label, suite, kind, job), experiment.name, label, suite, variant, kind, budgets, job)
+
+
+def _cutoffs(run: Run) -> Iterator[Run]:
+    """Yield the same run with every smaller budget as its real limit."""
+    for budget in run.budgets[:-1]:
+        job = replace(run.job, budget=float(budget))
+        key = _key(run.label, run.suite, "cutoff", job)
+        yield replace(run, key=key, kind="cutoff", budgets=(budget,), job=job)
+
+
+def _key(label: str, suite: str, kind: RunKind, job: Job) -> str:
+    meant = [label, suite, kind, job.planner, asdict(job.options), job.budget, job.memory]
+    return hashlib.sha256(json.dumps([*meant, instance_hash(job.instance)]).encode()).hexdigest()[:20]
+
+
+def instance_hash(instance: Instance) -> str:
+    """Return a hash of the whole instance, its name included."""
+    return hashlib.sha256(json.dumps(instance_document(instance)).encode()).hexdigest()[:16]
+
+
+def not_installed(experiment: Experiment) -> dict[str, str]:
+    """Return which of the experiment's planners cannot run here, and why."""
+    lacking = {}
+    for name in dict.fromkeys(entry.name for entry in experiment.planners):
+        try:
+            get_planner(name)
+        except Unsupported as error:
+            lacking[name] = str(error)
+        except Exception:  # a planner that is broken, not missing: its runs say so
+            continue
+    return lacking
+
+
+def budget_dependent(planner: str) -> bool:
+    """Whether a planner must be run at each budget by itself; one that cannot be loaded says so in its runs."""
+    try:
+        loaded = get_planner(planner)
+    except Exception:
+        return False
+    return bool(getattr(loaded, "budget_dependent", not getattr(loaded, "anytime", False)))
+
+
+def _instances(suite: str, base: Path) -> list[Instance]:
+    return read_suite(suite if suite in suite_names() else str(set_directory(suite, base)))
+
+
+def set_directory(suite: str, base: Path) -> Path:
+    """Return where a set lies that is no committed one: kept beside the experiment in a results directory, or `base`.
+
+    Raises:
+        MalformedFile: where the list of kept sets is damaged.
+    """
+    kept = base / INSTANCES / SETS
+    if kept.is_file():
+        try:
+            folder = json.loads(read_bytes(kept)).get(suite)
+        except (ValueError, AttributeError):
+            raise MalformedFile(str(kept), "not an object of sets and their folders") from None
+        if isinstance(folder, str):
+            return base / INSTANCES / folder
+    return base / suite

@@ -1,0 +1,124 @@
+"""A sweep: the runs of an experiment on a pool, each recorded as it ends.
+
+The pool is any `concurrent.futures` executor: threads here (every run has processes of its own), or that of a
+Dask client. Nothing but this process writes records, so a run that a dead worker's successor repeats is
+recorded once.
+"""
+
+from __future__ import annotations
+
+import queue
+from collections.abc import Callable, Iterable
+from concurrent.futures import Executor, Future
+from datetime import UTC, datetime
+from functools import partial
+from threading import Event
+from typing import Any, Protocol
+
+from smash.experiments.environment import load
+from smash.experiments.isolation.caller import run_isolated
+from smash.experiments.sweeps.experiment import Run
+from smash.experiments.sweeps.records import Records, record_of
+from smash.problem.errors import Interrupted, SmashError
+
+Record = dict[str, Any]
+_Future = Future[Record | None]
+_Ended = queue.SimpleQueue[_Future]
+
+
+class WorkersLost(SmashError):
+    """Some runs were lost with their workers, more than once; they are not recorded."""
+
+    exit_code = 7
+
+
+class Display(Protocol):
+    """Whoever shows how a sweep goes."""
+
+    def begun(self, run: Run) -> None:
+        """A run has started."""
+
+    def ended(self, run: Run, record: Record) -> None:
+        """A run has ended and is recorded."""
+
+
+def execute(run: Run, stop: Event | None = None, begun: Callable[[Run], None] | None = None) -> Record | None:
+    """Do one run and return its record; None where `stop` was set before it ended."""
+    if stop is not None and stop.is_set():
+        return None
+    if begun is not None:
+        begun(run)
+    started, load_before = datetime.now(UTC), load()
+    report = run_isolated(run.job, stop=stop)
+    return None if report.outcome == "interrupted" else record_of(run, report, started, load_before)
+
+
+def local_task(stop: Event, display: Display) -> Callable[[Run], Record | None]:
+    """Return the task for a pool in this process: it can be stopped, and tells the display when it begins."""
+    return partial(execute, stop=stop, begun=display.begun)
+
+
+def sweep(
+    runs: Iterable[Run],
+    records: Records,
+    executor: Executor,
+    task: Callable[[Run], Record | None],
+    display: Display,
+    stop: Event,
+) -> None:
+    """Do all runs that are not recorded yet.
+
+    Raises:
+        Interrupted: where `stop` was set before the last run had ended.
+        WorkersLost: where the executor gave runs up.
+    """
+    ended: _Ended = queue.SimpleQueue()
+    waiting: dict[_Future, Run] = {}
+    try:
+        for run in runs:
+            if run.key not in records.finished:
+                future = executor.submit(task, run)
+                waiting[future] = run
+                future.add_done_callback(ended.put)
+        lost = _collect(waiting, ended, records, display, stop)
+    except BaseException:
+        stop.set()
+        _cancel(waiting)
+        raise
+    if stop.is_set():
+        raise Interrupted("interrupted; every finished run is recorded, start again to do the rest")
+    if lost:
+        raise WorkersLost(f"{len(lost)} runs were lost ({lost[0]}); start again to do them")
+
+
+def _collect(
+    waiting: dict[_Future, Run], ended: _Ended, records: Records, display: Display, stop: Event
+) -> list[BaseException]:
+    """Record each run as it ends; return the errors of those that the executor gave up."""
+    lost: list[BaseException] = []
+    while waiting:
+        if stop.is_set():
+            _cancel(waiting)
+        try:
+            future = ended.get(timeout=0.5)
+        except queue.Empty:
+            continue
+        run = waiting.pop(future)
+        if future.cancelled():
+            if not stop.is_set():  # the scheduler is gone, and what it had with it
+                lost.append(ConnectionError("the scheduler is gone"))
+            continue
+        error = future.exception()
+        if isinstance(error, SmashError):
+            raise error
+        if error is not None:
+            lost.append(error)
+        elif (record := future.result()) is not None:
+            records.append(record)
+            display.ended(run, record)
+    return lost
+
+
+def _cancel(waiting: Iterable[_Future]) -> None:
+    for future in list(waiting):
+        future.cancel()

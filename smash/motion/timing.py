@@ -1,0 +1,195 @@
+"""When the arm is where: paths become trajectories within the Panda's velocity and acceleration limits.
+
+A straight joint segment gets the fastest synchronised trapezoid; any other path goes through toppra (time-optimal path
+parameterisation by reachability analysis) on a spline through closely spaced points, since a spline through sparse ones
+leaves the path.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from smash.motion.errors import NoMotion
+from smash.motion.hulls import densify
+from smash.motion.paths import Path, Waypoints
+from smash.motion.robot import ACCELERATION, VELOCITY, panda
+
+KNOT_STEP = 0.01
+"""Trajectories are stored at this interval [s]."""
+SPLINE_STEP = 0.05
+"""Largest joint distance between the spline's points [rad]."""
+FEWEST_GRIDPOINTS, MOST_GRIDPOINTS = 40, 150
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How much of the arm's limits a motion may use.
+
+    Attributes:
+        velocity: Fraction of the joint velocity limits, in (0, 1].
+        acceleration: Fraction of the joint acceleration limits, in (0, 1].
+        tool_speed: Greatest speed of the tool frame's origin [m/s], or None.
+    """
+
+    velocity: float = 1.0
+    acceleration: float = 0.5
+    tool_speed: float | None = None
+
+
+FREE = Pace()
+"""Motions through the free space."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """Configurations over time; cubic Hermite between the knots.
+
+    Attributes:
+        times: Knots [s], shape (T,), from 0.
+        positions: [rad], shape (T, 7).
+        velocities: [rad/s], shape (T, 7).
+    """
+
+    times: NDArray[np.float64]
+    positions: NDArray[np.float64]
+    velocities: NDArray[np.float64]
+
+    @property
+    def duration(self) -> float:
+        """[s]."""
+        return float(self.times[-1])
+
+    def at(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Configurations at `times` [s], shape (N,), held at the ends: [rad], shape (N, 7)."""
+        if len(self.times) < 2:
+            return np.repeat(self.positions, len(times), axis=0)
+        clipped = np.clip(times, 0.0, self.duration)
+        index = np.clip(np.searchsorted(self.times, clipped, side="right") - 1, 0, len(self.times) - 2)
+        span = (self.times[index + 1] - self.times[index])[:, None]
+        part = (clipped - self.times[index])[:, None] / span
+        square, cube = part**2, part**3
+        return np.asarray(
+            (2 * cube - 3 * square + 1) * self.positions[index]
+            + (cube - 2 * square + part) * span * self.velocities[index]
+            + (3 * square - 2 * cube) * self.positions[index + 1]
+            + (cube - square) * span * self.velocities[index + 1]
+        )
+
+    def sample(self, step: float) -> NDArray[np.float64]:
+        """Configurations every `step` [s] after the start, the end included: [rad], shape (N, 7)."""
+        count = max(1, int(np.ceil(self.duration / step - 1e-9)))
+        return self.at(np.minimum(np.arange(1, count + 1) * step, self.duration))
+
+
+def time_path(path: Path, pace: Pace = FREE) -> Trajectory:
+    """The fastest trajectory along the path that begins and ends at rest and keeps the pace.
+
+    Args:
+        path: Where.
+        pace: Share of the limits, and the tool's greatest speed.
+
+    Raises:
+        NoMotion: No trajectory along the path keeps the limits.
+    """
+    if path.length < 1e-9:
+        return Trajectory(np.zeros(1), path.waypoints[:1], np.zeros((1, path.waypoints.shape[1])))
+    if len(path.waypoints) == 2 and pace.tool_speed is None:
+        return trapezoid(path.start, path.end, pace)
+    return _toppra(path.waypoints, pace)
+
+
+def trapezoid(begin: NDArray[np.float64], end: NDArray[np.float64], pace: Pace = FREE) -> Trajectory:
+    """All joints start and stop together on the straight segment: the time-optimal motion along it.
+
+    With s in [0, 1] along the segment, the speed limit is min_j v_j / |d_j| and the acceleration limit
+    min_j a_j / |d_j| for the displacement d [rad].
+    """
+    displacement = end - begin
+    size = np.maximum(np.abs(displacement), 1e-12)
+    acceleration = float(np.min(pace.acceleration * ACCELERATION / size))
+    speed = min(float(np.min(pace.velocity * VELOCITY / size)), float(np.sqrt(acceleration)))
+    ramp = speed / acceleration
+    duration = 1.0 / speed + ramp
+    times = np.unique(np.concatenate([np.arange(0.0, duration, KNOT_STEP), [ramp, duration - ramp, duration]]))
+    rising = np.minimum(times, ramp)
+    falling = np.maximum(times - (duration - ramp), 0.0)
+    cruising = np.clip(times - ramp, 0.0, duration - 2 * ramp)
+    part = 0.5 * acceleration * rising**2 + speed * cruising + speed * falling - 0.5 * acceleration * falling**2
+    rate = acceleration * (rising - falling)
+    part[-1], rate[-1] = 1.0, 0.0
+    return Trajectory(times, begin + part[:, None] * displacement, rate[:, None] * displacement)
+
+
+def time_gently(path: Path, length: float, speed: float, acceleration: float) -> Trajectory:
+    """A trapezoid for a path whose waypoints are evenly spaced in the world: what is carried is hardly shaken.
+
+    Args:
+        path: Where; between two neighbouring waypoints a point of what is carried moves the same way.
+        length: Of that point's way [m].
+        speed: Its greatest speed [m/s].
+        acceleration: Its greatest acceleration along the way [m/s2].
+    """
+    from scipy.interpolate import CubicSpline
+
+    waypoints = path.waypoints
+    tangent = np.gradient(waypoints, 1.0 / (len(waypoints) - 1), axis=0)
+    steepest = np.maximum(np.abs(tangent).max(axis=0), 1e-12)
+    fastest = min(speed / length, float(np.min(VELOCITY / steepest)))
+    rise = acceleration / length
+    rate = min(fastest, float(np.sqrt(rise)))
+    ramp, duration = rate / rise, 1.0 / rate + rate / rise
+    times = np.append(np.arange(0.0, duration, KNOT_STEP), duration)
+    rising, falling = np.minimum(times, ramp), np.maximum(times - (duration - ramp), 0.0)
+    part = rate * (np.clip(times - ramp, 0.0, duration - 2 * ramp) + falling) + 0.5 * rise * (rising**2 - falling**2)
+    part = np.clip(part, 0.0, 1.0)
+    part[-1] = 1.0
+    at = np.linspace(0.0, 1.0, len(waypoints))
+    spline = CubicSpline(at, waypoints)
+    positions, velocities = spline(part), spline(part, 1) * (rise * (rising - falling))[:, None]
+    positions[-1], velocities[-1] = waypoints[-1], 0.0
+    return Trajectory(times, positions, velocities)
+
+
+def _toppra(waypoints: Waypoints, pace: Pace) -> Trajectory:
+    # toppra loads a plotting library: a second that `smash plan` must not pay.
+    import toppra
+    from toppra.algorithm import TOPPRA
+    from toppra.constraint import (
+        JointAccelerationConstraint,
+        JointVelocityConstraint,
+        JointVelocityConstraintVarying,
+    )
+
+    points = densify(waypoints, SPLINE_STEP)
+    points = points[np.concatenate([[True], np.any(np.abs(np.diff(points, axis=0)) > 1e-9, axis=1)])]
+    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    spline = toppra.SplineInterpolator(arc, points)
+    velocity, acceleration = pace.velocity * VELOCITY, pace.acceleration * ACCELERATION
+    constraints = [
+        JointVelocityConstraint(np.column_stack([-velocity, velocity])),
+        JointAccelerationConstraint(np.column_stack([-acceleration, acceleration])),
+    ]
+    if pace.tool_speed is not None:
+        tool_speed = pace.tool_speed
+        constraints.append(JointVelocityConstraintVarying(lambda s: _tool_limits(spline(s), spline(s, 1), tool_speed)))
+    grid = np.linspace(0.0, arc[-1], int(np.clip(2 * len(points), FEWEST_GRIDPOINTS, MOST_GRIDPOINTS)))
+    algorithm = TOPPRA(
+        constraints, spline, gridpoints=grid, parametrizer="ParametrizeConstAccel", solver_wrapper="seidel"
+    )
+    result = algorithm.compute_trajectory(0.0, 0.0)
+    if result is None:
+        raise NoMotion("the path cannot be followed within the arm's velocity and acceleration limits")
+    times = np.append(np.arange(0.0, result.duration, KNOT_STEP), result.duration)
+    positions, velocities = result(times), result(times, 1)
+    positions[-1], velocities[-1] = waypoints[-1], 0.0
+    return Trajectory(times, positions, velocities)
+
+
+def _tool_limits(joints: NDArray[np.float64], tangent: NDArray[np.float64], speed: float) -> NDArray[np.float64]:
+    """Joint velocity limits, shape (7, 2) [rad/s], that keep the tool's speed along the path's tangent."""
+    tool = float(np.linalg.norm(panda().jacobian(joints)[:3] @ tangent))
+    limit = np.abs(tangent) * speed / max(tool, 1e-6) + 1e-6
+    return np.column_stack([-limit, limit])

@@ -1,0 +1,140 @@
+"""Pick and place with at most two locations: one line of blocks and a cursor in it.
+
+Read the first location upward and then the second downward: a transfer moves the cursor between them by one
+block and changes nothing else, and a block from the table region enters the line at the cursor. So what can be
+reached is decided by looking: the blocks of the start line keep their order for ever. (With three locations or
+more every arrangement can be reached; with topple too.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from smash.problem.views.numbered import ON_TABLE, Indexed, Step
+from smash.problem.views.targets import Piles, Tower, goal_piles, towers_of
+
+
+def line_steps(problem: Indexed) -> list[Step] | None:
+    """Return steps that reach the goal without topple on one or two locations, or None where there are none.
+
+    Raises:
+        ValueError: with more than two locations.
+    """
+    if problem.locations > 2:
+        raise ValueError("a line has one or two locations")
+    start = [list(pile) for pile in (*problem.start, ())[:2]]
+    line = start[0] + start[1][::-1]
+    cuts = range(len(line) + 1) if problem.locations == 2 else [len(line)]
+    plans = []
+    for cut in sorted(cuts, key=lambda cut: abs(cut - len(start[0]))):
+        ends = _ends(problem, line, cut)
+        if ends is None or (problem.locations == 1 and list(ends[0][: len(line)]) != line):
+            continue
+        plans += [_swept(start, ends, first) for first in (0, 1)[: problem.locations]]
+        if len(plans) >= _ENOUGH:
+            break
+    return min(plans, key=len, default=None)
+
+
+_ENOUGH = 8
+"""Plans compared before the shortest is taken."""
+
+
+def _ends(problem: Indexed, line: Sequence[int], cut: int) -> Piles | None:
+    """Return both final piles if the start line is cut after `cut` blocks, or None where no goal state is cut so."""
+    piles = (list(line[:cut]), list(line[cut:])[::-1])
+    wanted = goal_piles(problem)
+    if wanted is None:
+        return _tower_ends(problem, piles)
+    table = set(problem.table)
+    finals = [_with_prefix(pile, want, table) for pile, want in zip(piles, (*wanted, ())[:2], strict=True)]
+    if any(final is None for final in finals):
+        return None
+    return tuple(tuple(final) for final in finals if final is not None)
+
+
+def _with_prefix(pile: list[int], want: Sequence[int], table: set[int]) -> list[int] | None:
+    """Return `pile` with table blocks put in so that it begins with `want`, or None."""
+    staying = iter(pile)
+    for block in want:
+        if block not in table and next(staying, None) != block:
+            return None
+    return [*want, *staying]
+
+
+def _tower_ends(problem: Indexed, piles: tuple[list[int], list[int]]) -> Piles | None:
+    """Return both final piles of an `on` goal: towers completed from the table, or None."""
+    table = set(problem.table)
+    towers = towers_of(problem)
+    waiting = [tower for tower in towers if all(block in table for block in tower.blocks)]
+    tower_of = {block: tower for tower in towers for block in tower.blocks if block not in table}
+    finals: list[list[int]] = []
+    grounded: list[bool] = []
+    for pile in piles:
+        final: list[int] = []
+        bottom = False
+        for position, tower in _runs(pile, tower_of):
+            if tower is None:
+                final.append(pile[position])
+                continue
+            stays = [block for block in tower.blocks if block not in table]
+            if pile[position : position + len(stays)] != stays or (tower.grounded and final):
+                return None
+            bottom = bottom or tower.grounded
+            final.extend(tower.blocks)
+        finals.append(final)
+        grounded.append(bottom)
+    for tower in sorted(waiting, key=lambda tower: not tower.grounded):
+        if not tower.grounded:
+            finals[0].extend(tower.blocks)
+            continue
+        free = [q for q in range(problem.locations) if not grounded[q]]
+        if not free:
+            return None
+        finals[free[0]][:0] = tower.blocks
+        grounded[free[0]] = True
+    return tuple(tuple(final) for final in finals)
+
+
+def _runs(pile: Sequence[int], tower_of: dict[int, Tower]) -> Iterator[tuple[int, Tower | None]]:
+    """Yield (position, tower) where a run of one tower's blocks begins, (position, None) for a block of none."""
+    for position, block in enumerate(pile):
+        tower = tower_of.get(block)
+        if tower is None or position == 0 or tower_of.get(pile[position - 1]) is not tower:
+            yield position, tower
+
+
+def _swept(start: Sequence[Sequence[int]], ends: Piles, first: int) -> list[Step]:
+    """Return steps from `start` to `ends`: one sweep of the cursor that puts in the table blocks on its way.
+
+    Args:
+        start: the two piles.
+        ends: the two final piles, whose line holds the start line in its order.
+        first: the location that is emptied first, as far as there is a block to put in.
+    """
+    left, right = list(start[first]), list(start[1 - first])
+    here, there = first, 1 - first
+    final = [*ends[first], *ends[there][::-1]]
+    known = {*left, *right}
+    added = [position for position, block in enumerate(final) if block not in known]
+    steps: list[Step] = []
+
+    def shift(source: list[int], target: list[int], numbers: tuple[int, int]) -> None:
+        target.append(source.pop())
+        steps.append((target[-1], *numbers))
+
+    if added:
+        kept = sum(block in known for block in final[: added[0]])
+        while len(left) > kept:
+            shift(left, right, (here, there))
+        while len(left) <= added[-1]:
+            if right and right[-1] == final[len(left)]:
+                shift(right, left, (there, here))
+            else:
+                left.append(final[len(left)])
+                steps.append((left[-1], ON_TABLE, here))
+    while len(left) > len(ends[first]):
+        shift(left, right, (here, there))
+    while len(left) < len(ends[first]):
+        shift(right, left, (there, here))
+    return steps

@@ -1,0 +1,1 @@
+"""The aggregating actions: topple, carry, lift, and those that others add."""

@@ -1,0 +1,1 @@
+"""Blocks-world problems in PDDL as instances of the testbed."""

@@ -1,0 +1,1 @@
+"""Instances and plans as files, read strictly and written whole."""

@@ -1,0 +1,1 @@
+"""Instance sets: the generators, the committed sets, the open instances."""

@@ -1,0 +1,100 @@
+"""Instance sets: the committed ones by name, any directory of instance files by its path."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from pathlib import Path
+
+from smash.problem.errors import MalformedFile
+from smash.problem.files.instances import make_instance, read_instance
+from smash.problem.model import TABLE, Instance
+from smash.problem.sets.generators import generate
+from smash.problem.sets.open_instances import FAMILIES, open_set
+
+SUITES = Path(__file__).parent / "committed"
+SUITE_SEED = 2026
+SUITE_BUFFERS = 12
+SUITE_COUNT = 20
+PAPER_SUITES = {f"{kind}-{size}": (kind, size) for kind in ("single", "multi") for size in (4, 6, 9)}
+"""The committed benchmark sets: name -> (benchmark, blocks); 20 instances with 12 buffers each."""
+
+
+def suite_names() -> list[str]:
+    """Return the names of the committed sets."""
+    return sorted(path.name for path in SUITES.iterdir() if path.is_dir())
+
+
+def suite_files(suite: str) -> list[Path]:
+    """Return the instance files of a committed set or of a directory, sorted by name; an instance file is its own set.
+
+    Raises:
+        MalformedFile: where it is none of these, or holds no instance file.
+    """
+    directory = SUITES / suite if suite in suite_names() else Path(suite)
+    if directory.is_file():
+        return [directory]
+    if not directory.is_dir():
+        known = ", ".join(suite_names())
+        raise MalformedFile(suite, f"neither a directory of instance files nor a committed set ({known})")
+    files = sorted(directory.glob("*.json"))
+    if not files:
+        raise MalformedFile(suite, "the directory holds no instance file (*.json)")
+    return files
+
+
+def read_suite(suite: str) -> list[Instance]:
+    """Read all instances of a set.
+
+    Raises:
+        MalformedFile: where one of them is refused, or two have the same name.
+    """
+    instances: dict[str, Instance] = {}
+    for file in suite_files(suite):
+        instance = read_instance(file)
+        if instance.name in instances:
+            raise MalformedFile(str(file), f"`name`: {instance.name!r} stands twice in the set")
+        instances[instance.name] = instance
+    return list(instances.values())
+
+
+def with_buffers(instance: Instance, count: int) -> Instance:
+    """Return the instance with `count` buffers: those that hold blocks stay, empty ones go or come (`u1`, `u2`, …).
+
+    Raises:
+        MalformedFile: where more buffers hold blocks at the start.
+    """
+    held = [buffer for buffer in instance.buffers if instance.start[buffer]]
+    if len(held) > count:
+        raise MalformedFile(instance.name, f"{len(held)} buffers hold blocks at the start; {count} are too few")
+    empty = [buffer for buffer in instance.buffers if not instance.start[buffer]][: count - len(held)]
+    kept = [buffer for buffer in instance.buffers if buffer in held or buffer in empty]
+    taken = {*instance.locations, TABLE}
+    fresh = (name for number in itertools.count(1) if (name := f"u{number}") not in taken)
+    return make_instance(
+        name=instance.name,
+        blocks=instance.blocks,
+        stacks=instance.stacks,
+        buffers=[*kept, *itertools.islice(fresh, count - len(kept))],
+        start={location: instance.start[location] for location in (*instance.stacks, *kept)},
+        goal=instance.goal,
+        table=instance.table,
+        where=instance.name,
+    )
+
+
+def generated_names() -> list[str]:
+    """Return the names of the committed sets that `made_again` makes."""
+    return [*PAPER_SUITES, *FAMILIES]
+
+
+def made_again(name: str) -> Iterator[Instance]:
+    """Generate the instances of a committed set anew.
+
+    Raises:
+        KeyError: where no generated set is called so.
+    """
+    if name in FAMILIES:
+        return open_set(name, SUITE_SEED)
+    kind, size = PAPER_SUITES[name]
+    return generate(kind, size, SUITE_BUFFERS, SUITE_COUNT, SUITE_SEED)
