@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal, NamedTuple, get_args
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal, NamedTuple, get_args
 
 from smash.problem.model import Action, Instance, PlanOptions
 from smash.problem.rules import Law, Verdict
@@ -26,7 +27,8 @@ class Plan:
 
     `status` is `optimal` (proven), `feasible`, `infeasible` (proven) or `unknown` (budget spent).
     `lower_bound` is None where the planner proves none; `bound_origin` names the proof. Without a plan
-    `actions` and `cost` are None.
+    `actions` and `cost` are None. `details` holds what only this planner measures (model size, translation seconds); it
+    is in records, not in plan files.
     """
 
     instance: str
@@ -38,6 +40,7 @@ class Plan:
     bound_origin: str | None = None
     incumbents: tuple[Incumbent, ...] = ()
     stated_cost: int | None = None
+    details: Mapping[str, Any] = field(default_factory=dict, compare=False)
 
     @property
     def cost(self) -> int | None:

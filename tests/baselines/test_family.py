@@ -29,8 +29,8 @@ from smash.problem import (
     make_instance,
     write_instance,
 )
-from smash.problem.actions.registry import is_plain
 from smash.problem.blocksworld.sexpr import parse_expression
+from smash.problem.problem import Problem
 from tests.baselines.test_encodings import random_walk
 from tests.cheapest import cheapest_plan
 from tests.family_strategies import family_instances, family_options
@@ -56,7 +56,7 @@ def stated_cost(steps, task) -> int:
 @FEW
 @given(family_instances(max_blocks=5, odd_names=True), family_options(), st.integers(0, 99))
 def test_every_legal_plan_can_be_said_and_read_back_at_the_same_cost(instance, options, seed):
-    if is_plain(instance, options):
+    if Problem(instance, options).plain:
         return
     task = compile_instance(instance, options, "chain")
     actions = random_walk(instance, options, 15, seed)
@@ -94,7 +94,7 @@ def test_unified_planning_simulates_what_the_law_does(instance, options, seed):
     from smash_baselines.up_problem import problem_of_task, up_plan
     from unified_planning.engines import UPSequentialSimulator
 
-    if is_plain(instance, options):
+    if Problem(instance, options).plain:
         return
     task = compile_instance(instance, options, "chain")
     problem = problem_of_task(task)

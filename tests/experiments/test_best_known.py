@@ -23,6 +23,7 @@ from smash.problem import Law, MalformedFile, PlanOptions, SmashError, Topple
 from smash.problem.certificate import certificate_text
 from smash.problem.files.plans import plan_document, plan_text, read_plan
 from smash.problem.model import Pick, Place
+from smash.problem.problem import Problem
 
 ROOT = Path(__file__).parents[2]
 NAME = "open-few-buffers-01"
@@ -140,7 +141,7 @@ def test_a_claimed_bound_is_not_believed_without_a_certificate(submit):
 
 
 def test_a_certificate_raises_the_bound_of_every_variant_that_allows_less(submit, known, tmp_path):
-    proof = certify(open_instances()[NAME], PlanOptions(), perf_counter() + 10)
+    proof = certify(Problem(open_instances()[NAME], PlanOptions()), perf_counter() + 10)
     file = tmp_path / "proof.json"
     file.write_text(certificate_text(proof))
     code, words = submit(filed("topple"), "--certificate", file)

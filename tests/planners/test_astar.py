@@ -10,7 +10,7 @@ from smash.planners.protocol import SolveOptions
 from smash.problem import Law, PlanOptions, StacksGoal, make_instance
 from smash.problem.sets.generators import generate
 from smash.problem.sets.suites import read_suite
-from smash.problem.views.numbered import Indexed, cost_of
+from smash.problem.views.numbered import Numbered, cost_of
 from tests.oracle import optimal_cost
 from tests.strategies import instances, plan_options
 
@@ -19,7 +19,7 @@ LOOSE = 6
 
 
 def searched(instance, options, upper):
-    problem = Indexed.of(instance)
+    problem = Numbered.of(instance)
     search = StateSearch(problem, options, upper)
     steps = None
     first_bound = search.lower_bound

@@ -10,9 +10,10 @@ from smash.planners.greedy import greedy_steps
 from smash.planners.portfolio import SmashPlanner
 from smash.planners.protocol import SolveOptions
 from smash.problem import Law, PlanOptions, StacksGoal, make_instance
+from smash.problem.problem import Problem
 from smash.problem.sets.generators import generate
 from smash.problem.sets.suites import read_suite
-from smash.problem.views.numbered import Indexed, cost_of
+from smash.problem.views.numbered import Numbered, cost_of
 from tests.oracle import optimal_cost
 from tests.strategies import instances, plan_options
 
@@ -35,7 +36,7 @@ def plans_of(search, seconds=60, most_width=None):
 
 
 def greedy_cost(problem, options):
-    return min(cost_of(steps) for steps in greedy_steps(problem, options, perf_counter() + 1))
+    return min(cost_of(steps) for steps in greedy_steps(Problem(problem, options), perf_counter() + 1))
 
 
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
@@ -43,7 +44,7 @@ def greedy_cost(problem, options):
 def test_passes_without_a_state_left_out_end_with_the_optimum_of_exhaustive_search(instance, options):
     best = optimal_cost(instance, options)
     assume(best is not None)
-    problem = Indexed.of(instance)
+    problem = Numbered.of(instance)
     search = BeamSearch(problem, options, best + LOOSE)
     plans = plans_of(search)
     costs = [cost_of(steps) for steps in plans]
@@ -59,7 +60,7 @@ def test_passes_without_a_state_left_out_end_with_the_optimum_of_exhaustive_sear
 def test_nothing_is_found_and_that_is_proven_where_the_plan_known_is_the_best(instance, options):
     best = optimal_cost(instance, options)
     assume(best)
-    search = BeamSearch(Indexed.of(instance), options, best)
+    search = BeamSearch(Numbered.of(instance), options, best)
     assert plans_of(search) == []
     assert search.ended == "proven"
 
@@ -68,7 +69,7 @@ def test_nothing_is_found_and_that_is_proven_where_the_plan_known_is_the_best(in
 @given(instances(min_blocks=5, max_blocks=7, max_stacks=4), plan_options())
 def test_the_narrowest_pass_gives_legal_plans_of_every_goal(instance, options):
     law = Law(instance, options)
-    problem = Indexed.of(instance)
+    problem = Numbered.of(instance)
     for steps in plans_of(BeamSearch(problem, options, 60), most_width=beam.FIRST_WIDTH):
         verdict = law.check(problem.actions(steps))
         assert verdict.accepted
@@ -76,7 +77,7 @@ def test_the_narrowest_pass_gives_legal_plans_of_every_goal(instance, options):
 
 
 def test_equal_seeds_find_equal_plans():
-    problem = Indexed.of(next(generate("multi", 9, 0, 1, 4)))
+    problem = Numbered.of(next(generate("multi", 9, 0, 1, 4)))
     options = PlanOptions(topple=False)
     first, second = (plans_of(BeamSearch(problem, options, 80, seed=3), most_width=8) for _ in range(2))
     assert first == second
@@ -84,7 +85,7 @@ def test_equal_seeds_find_equal_plans():
 
 
 def test_a_pass_that_left_a_state_out_proves_nothing():
-    problem = Indexed.of(next(generate("multi", 9, 0, 1, 4)))
+    problem = Numbered.of(next(generate("multi", 9, 0, 1, 4)))
     search = BeamSearch(problem, PlanOptions(topple=False), 80)
     plans_of(search, most_width=4)
     assert search.ended is None
@@ -92,7 +93,7 @@ def test_a_pass_that_left_a_state_out_proves_nothing():
 
 
 def test_layers_that_memory_does_not_hold_are_cut_and_prove_nothing():
-    problem = Indexed.of(next(generate("multi", 9, 0, 1, 4)))
+    problem = Numbered.of(next(generate("multi", 9, 0, 1, 4)))
     search = BeamSearch(problem, PlanOptions(topple=False), 80, memory=400)
     plans_of(search, seconds=0.2)
     assert search.ended is None
@@ -100,7 +101,7 @@ def test_layers_that_memory_does_not_hold_are_cut_and_prove_nothing():
 
 
 def test_the_deadline_is_kept():
-    problem = Indexed.of(next(generate("multi", 20, 0, 1, 0)))
+    problem = Numbered.of(next(generate("multi", 20, 0, 1, 0)))
     search = BeamSearch(problem, PlanOptions(topple=False), 400)
     started = perf_counter()
     plans_of(search, seconds=0.3)
@@ -109,7 +110,7 @@ def test_the_deadline_is_kept():
 
 def test_no_plan_is_looked_for_before_the_machine_code_is_there(monkeypatch):
     monkeypatch.setattr(beam.Compiler, "code", lambda deadline: None)
-    search = BeamSearch(Indexed.of(next(generate("multi", 6, 0, 1, 1))), PlanOptions(), 60)
+    search = BeamSearch(Numbered.of(next(generate("multi", 6, 0, 1, 1))), PlanOptions(), 60)
     assert search.run(perf_counter() + 10) is None
     assert search.ended is None
 
@@ -118,13 +119,13 @@ def test_three_hundred_blocks_are_left_to_others():
     blocks = [f"b{number}" for number in range(300)]
     goal = StacksGoal({"s1": tuple(blocks)})
     instance = make_instance(name="many", blocks=blocks, stacks=["s1", "s2"], start={"s2": blocks}, goal=goal)
-    search = BeamSearch(Indexed.of(instance), PlanOptions(), 1000)
+    search = BeamSearch(Numbered.of(instance), PlanOptions(), 1000)
     assert search.ended is not None
     assert search.run(perf_counter() + 1) is None
 
 
 def test_a_better_plan_of_others_is_to_be_beaten():
-    problem = Indexed.of(next(generate("multi", 6, 0, 1, 1)))
+    problem = Numbered.of(next(generate("multi", 6, 0, 1, 1)))
     options = PlanOptions(topple=False)
     search = BeamSearch(problem, options, 60)
     optimum = cost_of(plans_of(BeamSearch(problem, options, 60))[-1])
@@ -137,5 +138,5 @@ def test_the_default_betters_the_greedy_plan_of_fifteen_blocks_without_buffers()
     instance = next(each for each in read_suite("open-on") if each.name == "open-on-00")
     options = SolveOptions(topple=False)
     result = SmashPlanner().solve(instance, options, 15)
-    assert result.cost < greedy_cost(Indexed.of(instance), options)
+    assert result.cost < greedy_cost(Numbered.of(instance), options)
     assert Law(instance, options).check(result.actions).accepted

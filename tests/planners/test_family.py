@@ -9,7 +9,7 @@ from smash.planners.portfolio import SmashPlanner
 from smash.planners.precedence.planner import PrecedencePlanner
 from smash.planners.protocol import SolveOptions, why_unsupported
 from smash.problem import Costs, Law, State
-from smash.problem.actions.registry import is_plain
+from smash.problem.problem import Problem
 from smash.problem.views.distances import Estimate
 from tests.cheapest import cheapest_plan
 from tests.problem.test_family import scoop
@@ -61,7 +61,7 @@ def test_a_planner_that_counts_actions_of_three_kinds_says_so():
     assert "does not plan with carry" in why_unsupported(PrecedencePlanner(), scoop(), SolveOptions())
     assert "costs are in ms" in why_unsupported(PrecedencePlanner(), scoop(), left_out)
     assert why_unsupported(PrecedencePlanner(), scoop(costs=Costs()), left_out) is None
-    assert is_plain(scoop(costs=Costs()), left_out)
+    assert Problem(scoop(costs=Costs()), left_out).plain
 
 
 def test_smash_says_which_of_its_methods_are_exact():

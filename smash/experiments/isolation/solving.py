@@ -16,12 +16,13 @@ from time import perf_counter
 from typing import Any, NoReturn
 
 from smash.experiments.isolation.job import Job
-from smash.planners.protocol import PlanResult, why_unsupported
+from smash.planners.protocol import ask, plan_options, settings_of, why_unsupported
 from smash.planners.registry import UnknownPlanner, get_planner
 from smash.problem.errors import SmashError, Unsupported
 from smash.problem.files.plans import action_list
 from smash.problem.model import Action
-from smash.problem.plan import STATUSES
+from smash.problem.plan import STATUSES, Plan
+from smash.problem.problem import Problem
 
 
 def solve(job: Job, pipe: int) -> NoReturn:
@@ -47,7 +48,8 @@ def _solve(job: Job, voice: _Voice) -> None:
     except SmashError as error:  # no such planner, or no such encoding for it
         return voice.say(kind="failed", outcome="malformed", reason=str(error))
     try:
-        reason = why_unsupported(planner, job.instance, job.options)
+        problem, settings = Problem(job.instance, plan_options(job.options)), settings_of(job.options)
+        reason = why_unsupported(planner, problem, settings)
         if reason:
             raise Unsupported(f"planner {job.planner!r}: unsupported: {reason}")
         prepare = getattr(planner, "prepare", None)
@@ -55,13 +57,13 @@ def _solve(job: Job, voice: _Voice) -> None:
             prepare()
         voice.say(kind="solving")
         voice.started = perf_counter()
-        result = planner.solve(job.instance, job.options, job.budget, voice)
+        plan = ask(planner, problem, settings, job.budget, voice, name=job.planner)
     except UnknownPlanner as error:  # the one that is to warm-start it
         return voice.say(kind="failed", outcome="malformed", reason=str(error))
     except Unsupported as error:
         return voice.say(kind="failed", outcome="unsupported", reason=str(error))
     seconds = perf_counter() - voice.started
-    voice.say(kind="result", seconds=seconds, **_result_document(result))
+    voice.say(kind="result", seconds=seconds, **_answer(plan))
     return None
 
 
@@ -95,7 +97,7 @@ class _Voice:
         return float(seconds) if 0 <= seconds <= now else now
 
 
-def _result_document(result: PlanResult) -> dict[str, Any]:
+def _answer(result: Plan) -> dict[str, Any]:
     try:
         if result.status not in STATUSES:
             raise ValueError(f"status {result.status!r} is not one of {', '.join(STATUSES)}")

@@ -22,11 +22,12 @@ from smash.experiments.isolation.job import DEFAULT_MEMORY, Job
 from smash.planners.protocol import MOST_THREADS, SolveOptions
 from smash.planners.registry import get_planner, why_unknown
 from smash.problem.actions.registry import FAMILY
+from smash.problem.buffers import with_buffers
 from smash.problem.errors import MalformedFile, Unsupported
 from smash.problem.files.documents import convert, parse_toml, read_bytes
 from smash.problem.files.instances import instance_document
 from smash.problem.model import Instance, PlanOptions
-from smash.problem.sets.suites import read_suite, suite_names, with_buffers
+from smash.problem.sets.suites import read_suite, suite_names
 
 RunKind = Literal["anytime", "budget", "cutoff"]
 FURTHER = tuple(name for name in FAMILY if name != "topple")

@@ -26,12 +26,6 @@ def kind_of(action: Aggregating) -> AggregatingKind[Any]:
     return _BY_CLASS[type(action)]
 
 
-def is_plain(instance: Instance, options: PlanOptions) -> bool:
-    """Return whether a problem is one of pick, place and topple alone, each at cost 1."""
-    further = any(kind.name != "topple" for kind in kinds_of(instance, options))
-    return not further and instance.costs.plain and not any(carrier.holds for carrier in instance.carriers)
-
-
 def kinds_of(instance: Instance, options: PlanOptions) -> list[AggregatingKind[Any]]:
     """Return the kinds of aggregating actions that plans of `instance` may use, in the family's order."""
     return [kind for kind in FAMILY.values() if allowed(kind, instance, options)]
