@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import ClassVar
 
 from smash.planners.astar import BeamSearch, StateSearch, search_law_states
-from smash.planners.greedy import greedy_plans, passes
+from smash.planners.greedy import greedy_method, greedy_plans
 from smash.planners.protocol import (
     Method,
     MethodPlanner,
@@ -86,7 +86,7 @@ class SmashPlanner(MethodPlanner):
             Method("search", plain, part.search, wide_share),
         )
         return (
-            passes(settings, GREEDY_SHARE),
+            greedy_method(settings, GREEDY_SHARE),
             Method("light search", plain, part.light_search, most=LIGHT_SECONDS),
             *(small if blocks <= SMALL_BLOCKS else large),
             Method("the law's states", not_plain, search_law_states, SEARCH_SHARE),
