@@ -127,7 +127,7 @@ class Scheduler:
         number = self._gadget.aggregate(name, at)
         aggregate = self._gadget.aggregates[number]
         blocks = kind_of(action).gathered(self._state, action)
-        self._law.apply(self._state, action)
+        self._law.carry_out(self._state, action)
         if aggregate.token is not None:
             step = self._carry(aggregate, blocks)
         elif aggregate.locks is not None:

@@ -86,9 +86,10 @@ class Law:
         reason = self.refusal(state, action)
         if reason is not None:
             raise IllegalAction(f"{action}: {reason}")
-        self._carry_out(state, action)
+        self.carry_out(state, action)
 
-    def _carry_out(self, state: State, action: Action) -> None:
+    def carry_out(self, state: State, action: Action) -> None:
+        """Carry out a legal `action` on `state`, in place; it is not asked whether it is legal."""
         match action:
             case Pick(block, source):
                 if source in state.piles:
@@ -144,7 +145,7 @@ class Law:
             if reason is not None:
                 return Verdict(False, f"{action}: {reason}", step)
             total += 1 if plain else self.cost(state, action)
-            self._carry_out(state, action)
+            self.carry_out(state, action)
         shortfall = self.goal_shortfall(state)
         return Verdict(shortfall is None, f"goal not reached: {shortfall}" if shortfall else "", cost=total)
 
@@ -163,7 +164,7 @@ class Law:
             if reason is not None:
                 raise IllegalAction(f"{action}: {reason}")
             total += self.cost(state, action)
-            self._carry_out(state, action)
+            self.carry_out(state, action)
         return total
 
     def states(self, actions: Sequence[Action]) -> Iterator[State]:
