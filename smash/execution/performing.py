@@ -100,11 +100,11 @@ class Performer:
             segments = self._planned(task, state, row)
         match task.action:
             case Pick(block, _):
-                carry_out(self.world, segments)
+                follow(self.world, segments)
                 self._require_grasp(block)
                 self.hand = block
             case Place(block, target):
-                carry_out(self.world, segments)
+                follow(self.world, segments)
                 self.hand = None
                 self.world.wait(PAUSE)
                 if not _stands_on(block, target, self.observe()):
@@ -120,7 +120,7 @@ class Performer:
         motion = MOTIONS[type(action)]
         most = MOST_MOTIONS if self.policy.repair else motion.motions(action, self.observe())
         for number in range(1, most + 1):
-            carry_out(self.world, segments)
+            follow(self.world, segments)
             self.world.settle()
             state = self.observe()
             if number == most or not motion.unfinished(action, state):
@@ -194,7 +194,7 @@ def _stands_on(block: str, target: str, state: State) -> bool:
     return state.piles[target][-1:] == [block] if target in state.piles else block in state.carried[target]
 
 
-def carry_out(world: World, segments: Sequence[Segment]) -> None:
+def follow(world: World, segments: Sequence[Segment]) -> None:
     """Let the simulated arm and fingers do what was planned."""
     for segment in segments:
         if isinstance(segment, Grip):

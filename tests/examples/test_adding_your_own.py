@@ -197,6 +197,13 @@ def test_the_aggregating_actions_part_of_the_gadget_encodes_and_decodes_plans_wi
     assert drawn.returncode == 0, drawn.stderr
 
 
+@pytest.mark.slow
+def test_the_papers_claim_holds_with_the_aggregating_action_too(installed):
+    """Random plans with it are motions, and random motions with it are plans, at their costs."""
+    ended = run(["-m", "pytest", "-p", "no:cacheprovider", "tests/gadget/test_claim.py"], installed, ROOT)
+    assert ended.returncode == 0, ended.stdout
+
+
 GROUPS = ("smash.aggregating", "smash.gadget_parts", "smash.pddl_parts", "smash.motions")
 REGISTRIES = """
 import smash.gadget.parts.registry
