@@ -27,7 +27,7 @@ from tests.gadget.plans import walks
 from tests.oracle import optimal_cost
 from tests.strategies import family_instances, family_options, instances, plan_options
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
 def solve(instance, options=None, budget=20.0):
