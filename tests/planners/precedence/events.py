@@ -19,31 +19,34 @@ def freed_by(graph, chosen):
 
 def in_order(graph, direct):
     """Return whether the events can be ordered if the blocks `direct` move once, straight to their places."""
-    in_pile = {block for _, begin, end in graph.piles for block in range(begin, end)}
-
-    def removal(block):
-        return ("R", block)
-
-    def placement(block):
-        return ("R" if block in direct and block in in_pile else "P", block)
-
     before = TopologicalSorter()
-    for first, (_, begin, end) in zip(graph.first, graph.piles, strict=True):
-        for upper, lower in itertools.pairwise(range(begin, end)):
-            before.add(removal(lower), removal(upper))
-        if first >= 0 and placement(first) != removal(end - 1):
-            before.add(placement(first), removal(end - 1))
-    for chain in graph.chains:
-        for under, upper in itertools.pairwise(chain.tolist()):
-            before.add(placement(upper), placement(under))
-    for block in in_pile:
-        if graph.placed[block] and block not in direct:
-            before.add(placement(block), removal(block))
+    for earlier, later in relations(graph, direct):
+        before.add(later, earlier)
     try:
         before.prepare()
     except CycleError:
         return False
     return True
+
+
+def relations(graph, direct):
+    """Yield what comes before what; a block that moves directly has one event for its removal and its placement."""
+    in_pile = {block for _, begin, end in graph.piles for block in range(begin, end)}
+
+    def placement(block):
+        return ("R" if block in direct and block in in_pile else "P", block)
+
+    for first, (_, begin, end) in zip(graph.first, graph.piles, strict=True):
+        for upper, lower in itertools.pairwise(range(begin, end)):
+            yield ("R", upper), ("R", lower)
+        if first >= 0 and placement(first) != ("R", end - 1):
+            yield ("R", end - 1), placement(first)
+    for chain in graph.chains:
+        for under, upper in itertools.pairwise(chain.tolist()):
+            yield placement(under), placement(upper)
+    for block in in_pile - set(direct):
+        if graph.placed[block]:
+            yield ("R", block), ("P", block)
 
 
 def hits_all(graph, chosen):
