@@ -159,6 +159,15 @@ def test_a_horizon_that_is_too_short_is_never_infeasible_and_its_best_plan_never
         assert result.cost == 3
 
 
+@pytest.mark.parametrize("horizon", range(1, 6))
+def test_no_horizon_proves_too_much_of_a_pile_that_starts_on_a_buffer(horizon):
+    """The upper block has to be put on the stack and toppled: 3 moves and a topple."""
+    instance = make_instance(
+        name="x", blocks="ab", stacks=["s1"], buffers=["u1"], start={"u1": "ab"}, goal=StacksGoal({"s1": ("a", "b")})
+    )
+    assert solve(instance, SolveOptions(horizon=horizon)).lower_bound <= 7 == optimal_cost(instance)
+
+
 def test_a_warm_start_gives_its_plan_at_once_and_the_same_optimum():
     instance = next(generate("multi", 4, 12, 1, 7))
     cold, warm = solve(instance), solve(instance, SolveOptions(warm_start="greedy"))
