@@ -21,7 +21,7 @@ from smash.problem.views.numbered import Indexed
 
 @pytest.mark.parametrize("topple", [True, False])
 @pytest.mark.parametrize("goal", ["stacks", "on"])
-def test_compiled_and_interpreted_searches_file_the_same_states(topple, goal):
+def test_compiled_and_interpreted_searches_file_the_same_states(topple, goal, machine_code):
     instance = next(generate("multi", 6, 1, 1, 3))
     if goal == "on":
         pairs = (pair for pile in instance.goal.stacks.values() for pair in itertools.pairwise(pile))
@@ -29,7 +29,7 @@ def test_compiled_and_interpreted_searches_file_the_same_states(topple, goal):
     setting = make_setting(Indexed.of(instance), PlanOptions(topple))
     engines = [
         StoreEngine(setting, INTERPRETED, False),
-        StoreEngine(setting, Compiler.code(perf_counter() + 110), True),
+        StoreEngine(setting, machine_code, True),
     ]
     for engine in engines:
         engine.open(3000, engine.first_bound(), 30)
