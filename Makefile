@@ -7,7 +7,7 @@ STAMP := $(VENV)/.installed
 SCENES := friction-0.10 friction-0.30 friction-0.40 friction-0.50
 
 .DEFAULT_GOAL := help
-.PHONY: help test test-slow lint suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full friction topple-map scoop reproduce reproduce-full results
+.PHONY: help test test-slow test-timing lint suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full friction topple-map scoop reproduce reproduce-full results
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -22,7 +22,10 @@ test: $(STAMP) ## run the tests (minutes); slow ones with `make test-slow`
 	$(BIN)/python -m pytest
 
 test-slow: $(STAMP) ## run the slow tests too
-	$(BIN)/python -m pytest -m 'slow or not slow' --timeout=900
+	$(BIN)/python -m pytest -m 'not timing' --timeout=900
+
+test-timing: $(STAMP) ## run the tests of budgets and of times; nothing else should run beside them
+	$(BIN)/python -m pytest -m timing --timeout=900
 
 lint: $(STAMP) ## ruff and mypy, both strict
 	$(BIN)/ruff check .

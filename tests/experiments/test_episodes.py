@@ -130,7 +130,7 @@ def test_killed_at_random_moments_no_episode_is_lost_or_repeated(results, tmp_pa
         time.sleep(chance.uniform(1.0, 12.0))
         running.send_signal(signal.SIGKILL)
         running.wait()
-        assert not psutil.wait_procs(alive(str(tmp_path)), timeout=5)[1]
+        assert not psutil.wait_procs(alive(str(tmp_path)), timeout=60)[1]
         text = (disturbed / EPISODES).read_text() if (disturbed / EPISODES).exists() else ""
         now = [line for line in text.splitlines(keepends=True) if line.endswith("\n")]
         assert now[: len(seen)] == seen
@@ -166,6 +166,6 @@ def test_an_interrupted_one_ends_at_once_and_keeps_what_had_ended(results, tmp_p
     assert "1 episodes, 1 left" in said
     time.sleep(0.5)
     running.send_signal(signal.SIGINT)
-    _, said = running.communicate(timeout=30)
+    _, said = running.communicate(timeout=100)
     assert running.returncode == 130
     assert "start again" in said.splitlines()[-1]

@@ -138,7 +138,7 @@ def test_an_interrupted_sweep_says_so_and_goes_on_later(experiment, tmp_path):
     while not ((out / RUNS).exists() and (out / RUNS).read_text()):
         time.sleep(0.05)
     running.send_signal(signal.SIGINT)
-    _, said = running.communicate(timeout=20)
+    _, said = running.communicate(timeout=100)
     assert running.returncode == 130
     assert "start again" in said.splitlines()[-1]
     assert 1 <= len(records(out)) < 4

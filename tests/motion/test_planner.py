@@ -77,3 +77,8 @@ def test_random_picks_places_and_pushes_are_mostly_straight_and_touch_nothing():
     assert touching(tally) == 0
     assert tally.kinds["straight"] >= 0.6 * sum(tally.kinds.values())
     assert sum(tally.failures.values()) <= 4
+
+
+@pytest.mark.timing
+def test_a_motion_of_a_pick_is_found_within_40_milliseconds_every_second_time():
+    assert np.median(run(tables=10, blocks=9, seed=2).seconds["a motion of a pick"]) < 0.04

@@ -26,8 +26,8 @@ from smash.problem import (
 )
 from smash.problem.certificate import ONE, Cases, Certificate, Leaf, RefusedCertificate, certificate_text, proven_bound
 from smash.problem.problem import Problem
+from tests.arrangements import wide
 from tests.oracle import optimal_cost
-from tests.planners.test_precedence import wide
 from tests.strategies import instances, plan_options
 
 

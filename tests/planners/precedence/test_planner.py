@@ -1,14 +1,13 @@
 """`precedence`: its bound holds for every plan, and where its plan fits it is the optimum."""
 
-import random
-
 import pytest
 from hypothesis import given, settings
 
 from smash.planners.precedence import PrecedencePlanner
 from smash.planners.protocol import SolveOptions
 from smash.problem import Law, OnGoal, PlanOptions, PositionsGoal, StacksGoal, check_plan, make_instance
-from smash.problem.sets.generators import block_names, generate
+from smash.problem.sets.generators import generate
+from tests.arrangements import wide
 from tests.oracle import optimal_cost
 from tests.strategies import instances, plan_options
 
@@ -19,28 +18,6 @@ def solve(instance, options=None, budget=20.0):
     if result.actions is not None:
         assert check_plan(instance, result.as_plan(instance, "precedence", options)).accepted
     return result
-
-
-def wide(blocks, stacks, seed, buffers=0):
-    """Draw start and goal uniformly over `stacks` stacks."""
-    draw = random.Random(seed)
-    names, places = list(block_names(blocks)), [f"s{number}" for number in range(stacks)]
-
-    def arrangement():
-        draw.shuffle(names)
-        piles = {place: [] for place in places}
-        for name in names:
-            piles[draw.choice(places)].append(name)
-        return {place: tuple(pile) for place, pile in piles.items()}
-
-    return make_instance(
-        name=f"wide-{blocks}-{stacks}-{seed}",
-        blocks=sorted(names),
-        stacks=places,
-        buffers=[f"u{number}" for number in range(buffers)],
-        start=arrangement(),
-        goal=StacksGoal(arrangement()),
-    )
 
 
 @settings(max_examples=120, deadline=None)

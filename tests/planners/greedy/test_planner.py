@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 
 from smash.planners.greedy import GreedyPlanner, greedy_steps
+from smash.planners.greedy.construct import Construction
 from smash.planners.protocol import SolveOptions
 from smash.problem import PlanOptions
 from smash.problem.problem import Problem
@@ -46,7 +47,7 @@ def test_every_committed_instance_gets_a_plan(suite, topple):
 
 
 @pytest.mark.parametrize("topple", [True, False])
-def test_a_thousand_blocks_get_their_first_plan_within_seconds(topple):
+def test_a_thousand_blocks_get_a_plan(topple):
     instance = next(generate("multi", 1000, 12, 1, 0))
     for buffers in (12, 1):
         cut = dataclasses.replace(
@@ -54,22 +55,21 @@ def test_a_thousand_blocks_get_their_first_plan_within_seconds(topple):
             buffers=instance.buffers[:buffers],
             start={q: instance.start[q] for q in (*instance.stacks, *instance.buffers[:buffers])},
         )
-        started = perf_counter()
-        result = GreedyPlanner().solve(cut, SolveOptions(topple), 0.1)
-        assert result.actions is not None
-        assert perf_counter() - started < 20
+        assert GreedyPlanner().solve(cut, SolveOptions(topple), 0.1).actions is not None
 
 
-def test_no_pass_is_begun_that_would_end_after_the_budget():
-    instance = next(iter(generate("multi", 1000, buffers=2, count=1, seed=5)))
-    began = perf_counter()
-    first = next(iter(GreedyPlanner().solve(instance, SolveOptions(topple=False), 1e-9).incumbents))
-    assert first.seconds <= perf_counter() - began < 3 * first.seconds + 0.5
-
-
-def test_patient_passes_go_on_to_the_deadline_and_only_improve():
+@pytest.mark.parametrize("patient", [True, False])
+def test_past_the_deadline_there_is_the_first_pass_and_no_other(monkeypatch, patient):
+    passes = []
+    run = Construction.run
+    monkeypatch.setattr(Construction, "run", lambda self, *first: passes.append(self) or run(self, *first))
     problem = Problem(next(generate("multi", 20, 0, 1, 0)), PlanOptions(topple=False))
-    started = perf_counter()
-    costs = [cost_of(steps) for steps in greedy_steps(problem, started + 0.3, patient=True)]
-    assert 0.1 < perf_counter() - started < 0.8
+    (plan,) = greedy_steps(problem, perf_counter(), patient=patient)
+    assert plan
+    assert len(passes) == 1
+
+
+def test_patient_passes_only_improve():
+    problem = Problem(next(generate("multi", 20, 0, 1, 0)), PlanOptions(topple=False))
+    costs = [cost_of(steps) for steps in greedy_steps(problem, perf_counter() + 0.3, patient=True)]
     assert costs == sorted(set(costs), reverse=True)
