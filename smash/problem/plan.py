@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, get_args
 
-from smash.problem.model import Action, Instance, PlanOptions
+from smash.problem.model import Action, Instance, Pick, Place, PlanOptions
 from smash.problem.rules import Law, Verdict
 
 Status = Literal["optimal", "feasible", "infeasible", "unknown"]
@@ -45,6 +46,37 @@ class Plan:
         if self.actions is None:
             return None
         return len(self.actions) if self.stated_cost is None else self.stated_cost
+
+    def __repr__(self) -> str:
+        return f"<Plan {self}>"
+
+    def __str__(self) -> str:
+        found = "no actions" if self.actions is None else f"cost {self.cost}"
+        bound = "" if self.lower_bound is None else f", lower bound {self.lower_bound}"
+        return f"for {self.instance!r} by {self.planner}: {self.status}, {found}{bound}"
+
+    def _repr_svg_(self) -> str:
+        """Return the plan as a strip of its steps, for notebooks; a pick and its place are one."""
+        from smash.problem.pictures import Chip, chips_svg  # solving needs none
+
+        return chips_svg(
+            f"Plan {self}", [Chip(words, several) for words, several in steps_in_words(self.actions or ())]
+        )
+
+
+def steps_in_words(actions: Sequence[Action]) -> Iterator[tuple[str, bool]]:
+    """Yield each step in short words, a pick and its place as one, and whether it moves several blocks at once."""
+    following: list[Action | None] = [*actions[1:], None]
+    for number, (action, after) in enumerate(zip(actions, following, strict=False)):
+        match action, after:
+            case Pick(block, source), Place(_, target):
+                yield f"{block}: {source} → {target}", False
+            case Place(), _ if number and isinstance(actions[number - 1], Pick):
+                continue
+            case Pick() | Place(), _:
+                yield str(action).replace("'", ""), False
+            case _:
+                yield str(action).replace("'", ""), True
 
 
 def check_plan(instance: Instance, plan: Plan) -> Verdict:

@@ -11,7 +11,7 @@ import itertools
 import random
 from collections.abc import Iterator, Sequence
 
-from smash.problem.files.instances import make_instance
+from smash.problem.making import make_instance
 from smash.problem.model import Instance, PositionsGoal, StacksGoal
 
 STACKS = ("s1", "s2", "s3")

@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from smash.problem.files.instances import make_instance
+from smash.problem.making import make_instance
 from smash.problem.model import Goal, Instance, OnGoal, PositionsGoal, StacksGoal
 from smash.problem.sets.generators import block_names, buffer_names, cut
 

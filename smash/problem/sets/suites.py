@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from smash.problem.errors import MalformedFile
-from smash.problem.files.instances import make_instance, read_instance
+from smash.problem.files.instances import read_instance
+from smash.problem.making import fresh_names, make_instance
 from smash.problem.model import TABLE, Instance
 from smash.problem.sets.generators import generate
 from smash.problem.sets.open_instances import FAMILIES, open_set
@@ -70,7 +71,7 @@ def with_buffers(instance: Instance, count: int) -> Instance:
     empty = [buffer for buffer in instance.buffers if not instance.start[buffer]][: count - len(held)]
     kept = [buffer for buffer in instance.buffers if buffer in held or buffer in empty]
     taken = {*instance.locations, TABLE}
-    fresh = (name for number in itertools.count(1) if (name := f"u{number}") not in taken)
+    fresh = fresh_names("u", taken)
     return make_instance(
         name=instance.name,
         blocks=instance.blocks,
