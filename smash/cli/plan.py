@@ -15,6 +15,7 @@ from smash.cli.choices import SECONDS, without_option
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import DEFAULT_MEMORY, Job, Report
+from smash.experiments.planning import failure
 from smash.planners.protocol import MOST_THREADS, OnIncumbent, SolveOptions
 from smash.planners.registry import DEFAULT
 from smash.problem.files.documents import require_writable, write_text
@@ -135,6 +136,9 @@ def _end(report: Report, who: str, budget: float) -> None:
         "budget-spent": _without_plan(report, budget),
         "interrupted": f"interrupted{found}",
     }.get(report.outcome, f"{report.outcome}: {report.reason}")
+    error = failure(report, who)
+    if error is not None:
+        raise error
     if report.exit_code:
         fail(f"{who}: {words}", report.exit_code)
     if report.outcome == "over-budget":

@@ -9,14 +9,16 @@ from smash.problem.errors import Unsupported
 EXTRAS: dict[str, tuple[str, ...]] = {
     "analysis": ("matplotlib", "networkx", "pandas", "pyarrow", "jinja2"),
     "pddl": ("unified_planning", "up_fast_downward", "up_symk", "up_enhsp", "up_aries"),
-    "execution": ("pybullet", "ompl", "pinocchio", "coal", "toppra", "meshcat", "imageio"),
+    "execution": ("pybullet", "ompl", "pinocchio", "coal", "toppra", "imageio"),
     "cluster": ("dask", "distributed"),
     "gurobi": ("gurobipy",),
 }
-"""Extra -> the modules that come with it and are imported somewhere here."""
+"""Extra -> the modules that come with it."""
 
 EXECUTION = ("pybullet", "ompl", "pinocchio", "coal", "toppra")
-"""What an episode is carried out with; the rest of the extra `execution` shows it."""
+"""What an episode is carried out with."""
+TABLES = ("pandas", "matplotlib", "jinja2", "pyarrow")
+"""What records become tables, charts and pages with."""
 
 
 class MissingExtra(Unsupported):
@@ -51,6 +53,19 @@ def is_there(module: str) -> bool:
 
 
 def install_line(module: str) -> str:
-    """Return the command that installs a module of `EXTRAS`."""
-    extra = next(name for name, modules in EXTRAS.items() if module in modules)
-    return f"pip install 'smash-testbed[{extra}]'"
+    """Return the command that installs a module of `EXTRAS`.
+
+    Raises:
+        KeyError: where no extra brings it.
+    """
+    for extra, modules in EXTRAS.items():
+        if module in modules:
+            return f"pip install 'smash-testbed[{extra}]'"
+    raise KeyError(module)
+
+
+def missing_extra(error: BaseException, who: str) -> MissingExtra | None:
+    """Return what to say of an import that failed for want of an extra, or None where it failed otherwise."""
+    module = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
+    known = any(module in modules for modules in EXTRAS.values())
+    return MissingExtra(who, module) if known else None
