@@ -7,7 +7,7 @@ toppled blocks, whose poses are unknown to the planner.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
@@ -288,17 +288,26 @@ class State:
 
     def __str__(self) -> str:
         """A line for each pile, its blocks from the bottom to the top, then what is empty, the table, the hand."""
-        lines = [f"{location}: {' '.join(pile)}" for location, pile in self.piles.items() if pile]
+        lines = [f"{_plain(location)}: {_listed(pile)}" for location, pile in self.piles.items() if pile]
         empty = [location for location, pile in self.piles.items() if not pile]
         if empty:
-            lines.append(f"empty: {' '.join(empty)}")
+            lines.append(f"empty: {_listed(empty)}")
         for carrier, blocks in self.carried.items():
-            lines.append(f"{carrier} at {self.stations[carrier]}: {' '.join(sorted(blocks)) or 'empty'}")
+            lines.append(f"{_plain(carrier)} at {_plain(self.stations[carrier])}: {_listed(sorted(blocks)) or 'empty'}")
         if self.table:
-            lines.append(f"{TABLE} region: {' '.join(sorted(self.table))}")
-        lines.append("hand: " + ("empty" if self.hand is None else self.hand))
+            lines.append(f"{TABLE} region: {_listed(sorted(self.table))}")
+        lines.append("hand: " + ("empty" if self.hand is None else _plain(self.hand)))
         return "\n".join(lines)
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
         """Print the piles in a notebook."""
         printer.text(str(self))
+
+
+def _listed(names: Iterable[str]) -> str:
+    return " ".join(map(_plain, names))
+
+
+def _plain(name: str) -> str:
+    """Return a name as it stands in a line of text: in quotes where it would not be told apart there."""
+    return name if name.isprintable() and name and " " not in name else repr(name)

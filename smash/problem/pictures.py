@@ -17,8 +17,8 @@ PALETTE = (
 )  # fmt: skip
 SIDE, PITCH, FLOOR, HEAD, MARGIN = 28, 40, 22, 26, 10
 """Edge of a block, from one pile to the next, room for a pile's name, for the title, and around it all [px]."""
-WIDEST = 760
-"""A wider picture is shown smaller, and chips go on in the next row [px]."""
+WIDEST, TALLEST = 760, 600
+"""A larger picture is shown smaller, and chips go on in the next row [px]."""
 
 
 class Arrangement(NamedTuple):
@@ -72,10 +72,10 @@ def arrangements_svg(arrangements: Sequence[Arrangement], blocks: Sequence[str])
 
 
 def chips_svg(title: str, chips: Sequence[Chip]) -> str:
-    """Return a title and the steps of a plan under it, numbered, row by row, as one SVG picture."""
+    """Return a title and the steps of a plan under it, row by row, as one SVG picture."""
     parts, x, y, widest = [_text(MARGIN, 16, title, INK, anchor="start")], MARGIN, HEAD, 7 * len(title)
-    for number, chip in enumerate(chips, start=1):
-        words = f"{number}  {short(chip.words, 60)}"
+    for chip in chips:
+        words = short(chip.words, 60)
         width = 7 * len(words) + 14
         if x > MARGIN and x + width > WIDEST:
             x, y = MARGIN, y + 30
@@ -110,7 +110,8 @@ def _table(x: float, y: float, width: float, table: Sequence[str], colours: dict
 
 def _block(x: float, y: float, block: str, colours: dict[str, str]) -> Iterator[str]:
     yield _box(x, y, SIDE, SIDE, colours[block], PAPER, 4)
-    yield _text(x + SIDE / 2, y + SIDE / 2 + 4, short(block), ink_on(colours[block]), hover=block)
+    name, size = short(block), 12 if len(block) <= 3 else 10
+    yield _text(x + SIDE / 2, y + SIDE / 2 + 4, name, ink_on(colours[block]), hover=block, size=size)
 
 
 def _box(x: float, y: float, width: float, height: float, fill: str, line: str, radius: float) -> str:
@@ -118,9 +119,12 @@ def _box(x: float, y: float, width: float, height: float, fill: str, line: str, 
     return f'<rect {place} fill="{fill}" stroke="{line}"/>'
 
 
-def _text(x: float, y: float, words: str, colour: str, *, anchor: str = "middle", hover: str = "") -> str:
+def _text(
+    x: float, y: float, words: str, colour: str, *, anchor: str = "middle", hover: str = "", size: int = 12
+) -> str:
     title = f"<title>{_escaped(hover)}</title>" if hover else ""
-    return f'<text x="{x:g}" y="{y:g}" fill="{colour}" text-anchor="{anchor}">{_escaped(words)}{title}</text>'
+    look = f'fill="{colour}" text-anchor="{anchor}" font-size="{size}"'
+    return f'<text x="{x:g}" y="{y:g}" {look}>{_escaped(words)}{title}</text>'
 
 
 def _escaped(words: str) -> str:
@@ -130,8 +134,8 @@ def _escaped(words: str) -> str:
 
 
 def _svg(width: float, height: float, parts: Sequence[str]) -> str:
-    shown = min(width, WIDEST)
-    size = f'width="{shown:g}" height="{height * shown / width:g}" viewBox="0 0 {width:g} {height:g}"'
-    font = 'font-family="Helvetica, Arial, sans-serif" font-size="12"'
+    share = min(1.0, WIDEST / width, TALLEST / height)
+    size = f'width="{share * width:.0f}" height="{share * height:.0f}" viewBox="0 0 {width:g} {height:g}"'
+    font = 'font-family="Helvetica, Arial, sans-serif"'
     ground = f'<rect width="{width:g}" height="{height:g}" fill="{PAPER}"/>'
     return f'<svg xmlns="http://www.w3.org/2000/svg" {size} {font}>{ground}{"".join(parts)}</svg>'
