@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, get_args
 
-from smash.problem.model import Action, Instance, Pick, Place, PlanOptions
+from smash.problem.model import Action, Aggregating, Instance, Pick, Place, PlanOptions
 from smash.problem.rules import Law, Verdict
 
 Status = Literal["optimal", "feasible", "infeasible", "unknown"]
@@ -59,24 +59,20 @@ class Plan:
         """Return the plan as a strip of its steps, for notebooks; a pick and its place are one."""
         from smash.problem.pictures import Chip, chips_svg  # solving needs none
 
-        return chips_svg(
-            f"Plan {self}", [Chip(words, several) for words, several in steps_in_words(self.actions or ())]
-        )
+        chips = [Chip(words, several) for words, several in _steps_in_words(self.actions or ())]
+        return chips_svg(f"Plan {self}", chips)
 
 
-def steps_in_words(actions: Sequence[Action]) -> Iterator[tuple[str, bool]]:
-    """Yield each step in short words, a pick and its place as one, and whether it moves several blocks at once."""
+def _steps_in_words(actions: Sequence[Action]) -> Iterator[tuple[str, bool]]:
+    """Yield the numbered steps, a pick and its place as one, and whether a step moves several blocks at once."""
     following: list[Action | None] = [*actions[1:], None]
-    for number, (action, after) in enumerate(zip(actions, following, strict=False)):
-        match action, after:
-            case Pick(block, source), Place(_, target):
-                yield f"{block}: {source} → {target}", False
-            case Place(), _ if number and isinstance(actions[number - 1], Pick):
-                continue
-            case Pick() | Place(), _:
-                yield str(action).replace("'", ""), False
-            case _:
-                yield str(action).replace("'", ""), True
+    before: Action | None = None
+    for step, (action, after) in enumerate(zip(actions, following, strict=False), start=1):
+        if isinstance(action, Pick) and isinstance(after, Place):
+            yield f"{step}–{step + 1} · {action.block}: {action.source} → {after.target}", False
+        elif not (isinstance(action, Place) and isinstance(before, Pick)):
+            yield f"{step} · {action}".replace("'", ""), isinstance(action, Aggregating)
+        before = action
 
 
 def check_plan(instance: Instance, plan: Plan) -> Verdict:
