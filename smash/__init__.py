@@ -4,7 +4,7 @@
 
     instance = smash.make_instance(start={"s1": ["a", "b"], "s2": ["c"]}, goal={"s2": ["c", "a", "b"]})
     plan = smash.plan(instance)
-    print(plan.status, plan.cost, *plan.actions, sep="\n")
+    print(plan.status, plan.cost, *plan.actions, sep=", ")
     print(smash.check(instance, plan))
 
 - instances: `make_instance`, `generate`, `suite` and `suite_names`; `read_instance`, `write_instance`

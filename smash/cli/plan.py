@@ -92,7 +92,7 @@ def command(
     with stopped_by_signals() as stop, _progress(planner) as tell:
         report = run_isolated(job, tell, stop)
     _write(report, job, out)
-    _end(report, f"{instance}: planner {planner!r}", budget)
+    _end(report, instance, planner, budget)
 
 
 def _trusted(estimates: Path, max_topple: int | None) -> int:
@@ -125,7 +125,11 @@ def _without_plan(report: Report, budget: float) -> str:
     return "budget spent without a plan"
 
 
-def _end(report: Report, who: str, budget: float) -> None:
+def _end(report: Report, instance: Path, planner: str, budget: float) -> None:
+    error = failure(report, planner, f"{instance}: ")
+    if error is not None:
+        raise error
+    who = f"{instance}: planner {planner!r}"
     found = ""
     if report.actions is not None:
         found = f"; the best plan so far has cost {report.incumbents[-1].cost}"
@@ -136,9 +140,6 @@ def _end(report: Report, who: str, budget: float) -> None:
         "budget-spent": _without_plan(report, budget),
         "interrupted": f"interrupted{found}",
     }.get(report.outcome, f"{report.outcome}: {report.reason}")
-    error = failure(report, who)
-    if error is not None:
-        raise error
     if report.exit_code:
         fail(f"{who}: {words}", report.exit_code)
     if report.outcome == "over-budget":

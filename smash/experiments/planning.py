@@ -63,22 +63,25 @@ def plan(
     if not isolated:
         return _judged(_planned_here(job), job.instance)
     report = run_isolated(job)
-    error = failure(report, f"planner {planner!r}")
+    error = failure(report, planner)
     if error is not None:
         raise error
     return report.plan(job)
 
 
-def failure(report: Report, who: str) -> SmashError | None:
+def failure(report: Report, planner: str, where: str = "") -> SmashError | None:
     """Return what a run that ended without an answer failed of, or None where it has one.
 
     Args:
         report: how the run ended.
-        who: begins the message.
+        planner: the planner's name.
+        where: begins the message.
     """
     if report.outcome not in FAILURES:
         return None
-    return FAILURES[report.outcome](f"{who}: {report.outcome}: {report.reason}")
+    who = f"planner {planner!r}"
+    said = report.reason.startswith(who)
+    return FAILURES[report.outcome](where + (report.reason if said else f"{who}: {report.outcome}: {report.reason}"))
 
 
 def _check(budget: float, max_topple: int | None, seed: int) -> None:

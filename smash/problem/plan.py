@@ -51,7 +51,7 @@ class Plan:
         return f"<Plan {self}>"
 
     def __str__(self) -> str:
-        found = "no actions" if self.actions is None else f"cost {self.cost}"
+        found = "no plan" if self.actions is None else f"cost {self.cost}"
         bound = "" if self.lower_bound is None else f", lower bound {self.lower_bound}"
         return f"for {self.instance!r} by {self.planner}: {self.status}, {found}{bound}"
 
