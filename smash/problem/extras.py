@@ -67,5 +67,9 @@ def install_line(module: str) -> str:
 def missing_extra(error: BaseException, who: str) -> MissingExtra | None:
     """Return what to say of an import that failed for want of an extra, or None where it failed otherwise."""
     module = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
-    known = any(module in modules for modules in EXTRAS.values())
-    return MissingExtra(who, module) if known else None
+    return MissingExtra(who, module) if is_known(module) else None
+
+
+def is_known(module: str) -> bool:
+    """Return whether an extra brings a module."""
+    return any(module in modules for modules in EXTRAS.values())
