@@ -15,12 +15,14 @@ from smash.cli.choices import SECONDS, without_option
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import DEFAULT_MEMORY, Job, Report
-from smash.planners.protocol import MOST_THREADS, OnIncumbent, SolveOptions
+from smash.experiments.planning import failure
+from smash.planners.protocol import MOST_THREADS, OnIncumbent, Settings
 from smash.planners.registry import DEFAULT
 from smash.problem.files.documents import require_writable, write_text
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import plan_text
-from smash.problem.model import Action
+from smash.problem.model import Action, PlanOptions
+from smash.problem.problem import Problem
 
 
 @click.command("plan")
@@ -83,15 +85,15 @@ def command(
     if estimates is not None:
         max_topple = _trusted(estimates, max_topple)
         no_topple = no_topple or max_topple == 0
-    options = SolveOptions(not no_topple, max_topple or None, warm_start, horizon, threads, seed, without=without)
-    job = Job(planner, read_instance(instance), options, budget, memory)
+    problem = Problem(read_instance(instance), PlanOptions(not no_topple, max_topple or None, without=without))
+    job = Job(planner, problem, Settings(warm_start, horizon, threads, seed), budget, memory)
     if math.isnan(budget):
         raise click.BadParameter("nan is no number of seconds", param_hint="--budget")
     require_writable(out)
     with stopped_by_signals() as stop, _progress(planner) as tell:
         report = run_isolated(job, tell, stop)
     _write(report, job, out)
-    _end(report, f"{instance}: planner {planner!r}", budget)
+    _end(report, instance, planner, budget)
 
 
 def _trusted(estimates: Path, max_topple: int | None) -> int:
@@ -124,7 +126,11 @@ def _without_plan(report: Report, budget: float) -> str:
     return "budget spent without a plan"
 
 
-def _end(report: Report, who: str, budget: float) -> None:
+def _end(report: Report, instance: Path, planner: str, budget: float) -> None:
+    error = failure(report, planner, f"{instance}: ")
+    if error is not None:
+        raise error
+    who = f"{instance}: planner {planner!r}"
     found = ""
     if report.actions is not None:
         found = f"; the best plan so far has cost {report.incumbents[-1].cost}"

@@ -6,7 +6,8 @@ import itertools
 from dataclasses import replace
 
 from smash.problem.errors import MalformedFile
-from smash.problem.files.checking import InstanceChecker
+from smash.problem.files.checking import checked
+from smash.problem.making import fresh_names
 from smash.problem.model import TABLE, Instance
 
 
@@ -21,19 +22,17 @@ def with_buffers(instance: Instance, count: int) -> Instance:
         raise MalformedFile(instance.name, f"{len(held)} buffers hold blocks at the start; {count} are too few")
     empty = [buffer for buffer in instance.buffers if not instance.start[buffer]][: count - len(held)]
     kept = [buffer for buffer in instance.buffers if buffer in held or buffer in empty]
-    fresh = itertools.islice(_free_names(instance), count - len(kept))
+    fresh = itertools.islice(fresh_names("u", _taken(instance)), count - len(kept))
     buffers = (*kept, *fresh)
     start = {location: instance.start.get(location, ()) for location in (*instance.stacks, *buffers)}
     gone = set(instance.buffers).difference(buffers)
     positions = {place: at for place, at in instance.costs.positions.items() if place not in gone}
     costs = replace(instance.costs, positions=positions) if gone else instance.costs
     changed = replace(instance, buffers=buffers, start=start, costs=costs)
-    InstanceChecker(changed, instance.name).check()
-    return changed
+    return checked(changed, instance.name)
 
 
-def _free_names(instance: Instance) -> itertools.filterfalse[str]:
-    """Return the names `u1`, `u2`, … that no place of the instance has."""
+def _taken(instance: Instance) -> set[str]:
+    """Return the names of all places and carriers of the instance."""
     taken = {TABLE, *instance.locations, *(carrier.name for carrier in instance.carriers)}
-    taken |= {station for carrier in instance.carriers for station in carrier.stations}
-    return itertools.filterfalse(taken.__contains__, (f"u{number}" for number in itertools.count(1)))
+    return taken | {station for carrier in instance.carriers for station in carrier.stations}

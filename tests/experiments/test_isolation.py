@@ -14,20 +14,24 @@ import pytest
 
 from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import Job
-from smash.planners.protocol import SolveOptions
+from smash.planners.protocol import Settings
+from smash.problem import PlanOptions
 from smash.problem.errors import SmashError
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import plan_from_document, plan_text
+from smash.problem.problem import Problem
 
 pytestmark = pytest.mark.usefixtures("third_party")
+
+
+def problem(file, topple=True):
+    return Problem(read_instance(file), PlanOptions(topple))
 
 
 @pytest.fixture
 def run(tower_file):
     def call(planner, budget=60.0, memory=2048, topple=True, **more):
-        return run_isolated(
-            Job(planner, read_instance(tower_file), SolveOptions(topple=topple), budget, memory), **more
-        )
+        return run_isolated(Job(planner, problem(tower_file, topple), Settings(), budget, memory), **more)
 
     return call
 
@@ -133,7 +137,7 @@ def test_a_hang_is_stopped_when_its_grace_is_over(run):
 @pytest.mark.parametrize(("topple", "status", "cost"), [(True, "feasible", 5), (False, "unknown", None)])
 def test_a_hang_keeps_the_best_bound_that_it_had_proven(run, tower_file, topple, status, cost):
     report = run("hangs-with-bounds", budget=1.0, topple=topple)
-    job = Job("hangs-with-bounds", read_instance(tower_file), SolveOptions(topple=topple), 1.0)
+    job = Job("hangs-with-bounds", problem(tower_file, topple), Settings(), 1.0)
     filed = plan_from_document(json.loads(plan_text(report.plan(job))))
     assert report.outcome == "over-budget"
     assert (filed.status, filed.cost) == (status, cost)
@@ -244,6 +248,6 @@ def test_an_interrupted_plan_command_without_a_plan_writes_its_bound(alive, towe
 
 
 def test_an_unknown_warm_start_is_a_wrong_flag(tower_file):
-    job = Job("smash-layered", read_instance(tower_file), SolveOptions(warm_start="nobody"), 5.0)
+    job = Job("smash-layered", problem(tower_file), Settings(warm_start="nobody"), 5.0)
     with pytest.raises(SmashError, match="no planner is called 'nobody'"):
         run_isolated(job)

@@ -48,14 +48,14 @@ def _prepared():
     ],
 )
 def test_a_planner_answers_within_the_grace_of_its_budget(name, blocks, buffers, topple, budget):
-    instance = next(generate("multi", blocks, buffers, 1, 5))
+    instance = generate("multi", blocks, buffers=buffers, seed=5)[0]
     planner, started = get_planner(name), perf_counter()
     planner.solve(instance, SolveOptions(topple=topple), budget)
     assert perf_counter() - started < budget + grace(budget)
 
 
 def test_the_passes_of_a_beam_end_at_their_deadline():
-    search = BeamSearch(Numbered.of(next(generate("multi", 20, 0, 1, 0))), NO_TOPPLE, 400)
+    search = BeamSearch(Numbered.of(generate("multi", 20, buffers=0)[0]), NO_TOPPLE, 400)
     started = perf_counter()
     while search.run(started + 0.3) is not None:
         pass
@@ -63,14 +63,14 @@ def test_the_passes_of_a_beam_end_at_their_deadline():
 
 
 def test_patient_passes_of_the_greedy_planner_go_on_to_the_deadline():
-    problem = Problem(next(generate("multi", 20, 0, 1, 0)), NO_TOPPLE)
+    problem = Problem(generate("multi", 20, buffers=0)[0], NO_TOPPLE)
     started = perf_counter()
     list(greedy_steps(problem, started + 0.3, patient=True))
     assert 0.1 < perf_counter() - started < 0.3 + 0.5
 
 
 def test_no_pass_of_the_greedy_planner_is_begun_that_would_end_after_the_budget():
-    instance = next(generate("multi", 1000, 2, 1, 5))
+    instance = generate("multi", 1000, buffers=2, seed=5)[0]
     began = perf_counter()
     first = GreedyPlanner().solve(instance, SolveOptions(topple=False), 1e-9).incumbents[0]
     assert perf_counter() - began < 3 * first.seconds + 0.5
@@ -79,7 +79,7 @@ def test_no_pass_of_the_greedy_planner_is_begun_that_would_end_after_the_budget(
 @pytest.mark.parametrize("topple", [True, False])
 @pytest.mark.parametrize("buffers", [12, 1])
 def test_a_thousand_blocks_get_their_first_plan_within_seconds(topple, buffers):
-    instance = next(generate("multi", 1000, buffers, 1, 0))
+    instance = generate("multi", 1000, buffers=buffers)[0]
     started = perf_counter()
     GreedyPlanner().solve(instance, SolveOptions(topple), 0.1)
     assert perf_counter() - started < 20

@@ -61,7 +61,7 @@ def test_nine_blocks_are_proven_with_every_number_of_buffers(buffers, topple):
 
 def test_incumbents_improve_and_are_reported_at_once():
     seen = []
-    instance = next(generate("multi", 9, 1, 1, 5))
+    instance = generate("multi", 9, buffers=1, seed=5)[0]
     result = SmashPlanner().solve(
         instance, SolveOptions(topple=False), 10, lambda seconds, cost, plan: seen.append((seconds, cost, len(plan)))
     )
@@ -73,7 +73,7 @@ def test_incumbents_improve_and_are_reported_at_once():
 @pytest.mark.parametrize("budget", [0.05, 0.5])
 @pytest.mark.parametrize("blocks", [20, 150])
 def test_a_short_budget_gives_a_plan_and_a_bound_at_every_size(blocks, budget):
-    instance = next(generate("multi", blocks, 0, 1, 0))
+    instance = generate("multi", blocks, buffers=0)[0]
     result = SmashPlanner().solve(instance, SolveOptions(topple=False), budget)
     assert result.lower_bound <= result.cost
 
@@ -93,7 +93,7 @@ def test_two_locations_without_topple_are_refused_with_the_proof():
 
 
 def test_what_the_beam_found_and_proved_is_reported_at_once():
-    instance = next(generate("multi", 13, 0, 1, 4))
+    instance = generate("multi", 13, buffers=0, seed=4)[0]
     SmashPlanner().prepare()
     seen = []
     result = SmashPlanner().solve(
@@ -109,7 +109,7 @@ def test_what_the_beam_found_and_proved_is_reported_at_once():
 def test_a_beam_that_left_nothing_out_proves_the_plan_under_its_own_name(monkeypatch):
     for method in ("light_search", "search", "precedence", "layered"):
         monkeypatch.setattr(f"smash.planners.portfolio._Parts.{method}", lambda *_: None)
-    instance = next(generate("multi", 6, 0, 1, 4))
+    instance = generate("multi", 6, buffers=0, seed=4)[0]
     result = SmashPlanner().solve(instance, SolveOptions(topple=False), 20)
     assert (result.status, result.bound_origin) == ("optimal", "beam")
     assert result.cost == optimal_cost(instance, PlanOptions(topple=False))

@@ -32,7 +32,7 @@ from smash.motion.planner import MotionPlanner
 from smash.motion.poses import top_down
 from smash.motion.robot import LOWER, READY, UPPER
 from smash.problem.errors import ExecutionFailure
-from smash.problem.files.instances import make_instance
+from smash.problem.making import make_instance
 from smash.problem.model import Instance, PositionsGoal, State
 
 TOUCH = 0.003

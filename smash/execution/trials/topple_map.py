@@ -30,7 +30,7 @@ from smash.motion.poses import Vector
 from smash.motion.robot import READY
 from smash.problem.actions.topple import Topple
 from smash.problem.errors import ExecutionFailure
-from smash.problem.files.instances import make_instance
+from smash.problem.making import make_instance
 from smash.problem.model import PositionsGoal
 from smash.problem.rules import Law
 

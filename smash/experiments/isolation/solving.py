@@ -16,13 +16,12 @@ from time import perf_counter
 from typing import Any, NoReturn
 
 from smash.experiments.isolation.job import Job
-from smash.planners.protocol import ask, plan_options, settings_of, why_unsupported
-from smash.planners.registry import UnknownPlanner, get_planner
+from smash.planners.protocol import ask
+from smash.planners.registry import UnknownPlanner, get_planner, make_ready
 from smash.problem.errors import SmashError, Unsupported
 from smash.problem.files.plans import action_list
 from smash.problem.model import Action
 from smash.problem.plan import STATUSES, Plan
-from smash.problem.problem import Problem
 
 
 def solve(job: Job, pipe: int) -> NoReturn:
@@ -48,16 +47,10 @@ def _solve(job: Job, voice: _Voice) -> None:
     except SmashError as error:  # no such planner, or no such encoding for it
         return voice.say(kind="failed", outcome="malformed", reason=str(error))
     try:
-        problem, settings = Problem(job.instance, plan_options(job.options)), settings_of(job.options)
-        reason = why_unsupported(planner, problem, settings)
-        if reason:
-            raise Unsupported(f"planner {job.planner!r}: unsupported: {reason}")
-        prepare = getattr(planner, "prepare", None)
-        if prepare is not None:
-            prepare()
+        make_ready(planner, job.planner, job.problem, job.settings)
         voice.say(kind="solving")
         voice.started = perf_counter()
-        plan = ask(planner, problem, settings, job.budget, voice, name=job.planner)
+        plan = ask(planner, job.problem, job.settings, job.budget, voice, name=job.planner)
     except UnknownPlanner as error:  # the one that is to warm-start it
         return voice.say(kind="failed", outcome="malformed", reason=str(error))
     except Unsupported as error:

@@ -13,7 +13,8 @@ from typing import Any
 
 from smash.experiments.isolation.job import grace
 from smash.experiments.sweeps.experiment import Run
-from smash.problem.errors import SmashError, Unsupported
+from smash.problem.errors import SmashError
+from smash.problem.extras import require
 
 WORKERS_OWN_MEMORY = 1024
 """What a worker needs beside the run that it supervises [MiB]."""
@@ -26,13 +27,12 @@ def connected(where: str) -> Iterator[Any]:
     """Connect to the Dask scheduler at an address, or to the one that has written the file `where`.
 
     Raises:
-        Unsupported: where Dask is not installed.
+        MissingExtra: where Dask is not installed.
         SmashError: where no scheduler answers.
     """
-    try:
-        from distributed import Client
-    except ImportError:
-        raise Unsupported("Dask is not installed: pip install 'smash-testbed[cluster]'") from None
+    require("--dask", "distributed")
+    from distributed import Client
+
     for name in [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]:
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is said by the sweep
     place = {"scheduler_file": where} if Path(where).is_file() else {"address": where}
@@ -62,7 +62,7 @@ def slurm_script(runs: Sequence[Run], experiment: Path, out: Path, workers: int)
     longest = max((run.job.budget for run in runs), default=0.0)
     hours = math.ceil((seconds + longest + 600) / 3600)
     memory = max((run.job.memory for run in runs), default=0) + WORKERS_OWN_MEMORY
-    cores = max((run.job.options.threads for run in runs), default=1)
+    cores = max((run.job.settings.threads for run in runs), default=1)
     name = runs[0].experiment if runs else experiment.stem
     where, file, directory = (shlex.quote(str(path)) for path in (Path.cwd(), experiment.resolve(), out.resolve()))
     python = shlex.quote(sys.executable)

@@ -22,7 +22,7 @@ from smash.problem.views.numbered import Numbered
 @pytest.mark.parametrize("topple", [True, False])
 @pytest.mark.parametrize("goal", ["stacks", "on"])
 def test_compiled_and_interpreted_searches_file_the_same_states(topple, goal, machine_code):
-    instance = next(generate("multi", 6, 1, 1, 3))
+    instance = generate("multi", 6, buffers=1, seed=3)[0]
     if goal == "on":
         pairs = (pair for pile in instance.goal.stacks.values() for pair in itertools.pairwise(pile))
         instance = dataclasses.replace(instance, goal=OnGoal({upper: under for under, upper in pairs}))

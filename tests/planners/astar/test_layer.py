@@ -61,7 +61,7 @@ def goals_in(hand, store):
 
 
 def test_where_the_store_is_full_the_state_is_expanded_again():
-    hand = Hand(next(generate("multi", 6, 2, 1, 1)), PlanOptions(topple=False))
+    hand = Hand(generate("multi", 6, buffers=2, seed=1)[0], PlanOptions(topple=False))
     row, cost = layer_of(hand)
     store = make_store(hand.task, False, 1, UP, UP)
     assert expand_layer(hand.task, hand.cells, [*row, *row], [cost] * 2, [0] * 2, store, 0, 2) == 0

@@ -66,7 +66,7 @@ def test_a_plan_that_is_known_to_be_best_is_not_found_again(instance, options):
 
 @pytest.mark.parametrize("topple", [True, False])
 def test_a_full_store_goes_on_where_it_was_once_it_has_grown(topple):
-    instance, options = next(generate("multi", 6, 1, 1, 3)), PlanOptions(topple)
+    instance, options = generate("multi", 6, buffers=1, seed=3)[0], PlanOptions(topple)
     roomy, narrow = (opened(instance, options, 40, nodes) for nodes in (20_000, 3))
     while roomy.expand() == RUNNING:
         pass
@@ -81,7 +81,7 @@ def test_a_full_store_goes_on_where_it_was_once_it_has_grown(topple):
 
 
 def test_a_share_is_no_more_expansions_than_it_says():
-    engine = opened(next(generate("multi", 7, 0, 1, 0)), PlanOptions(topple=False), 60, share=7)
+    engine = opened(generate("multi", 7, buffers=0)[0], PlanOptions(topple=False), 60, share=7)
     for shares in range(1, 4):
         assert engine.expand() == RUNNING
         assert engine.counter(EXPANDED) == 7 * shares
@@ -90,7 +90,7 @@ def test_a_share_is_no_more_expansions_than_it_says():
 @pytest.fixture
 def start():
     """A search whose store holds the start alone, reached at cost 4."""
-    engine = opened(next(generate("multi", 5, 1, 1, 0)), PlanOptions(topple=False), 60, nodes=2)
+    engine = opened(generate("multi", 5, buffers=1)[0], PlanOptions(topple=False), 60, nodes=2)
     engine.store.counters[NODES] = 0
     engine.store.table[:] = [0] * len(engine.store.table)
     assert filed(engine, 4) == 0

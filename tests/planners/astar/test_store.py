@@ -17,7 +17,7 @@ from smash.problem.views.numbered import Numbered
 @pytest.fixture
 def engine():
     """A search with some nodes in its store."""
-    problem = Numbered.of(next(generate("multi", 7, 0, 1, 0)))
+    problem = Numbered.of(generate("multi", 7, buffers=0)[0])
     engine = StoreEngine(make_setting(problem, PlanOptions(topple=False)), INTERPRETED, False)
     engine.open(400, engine.first_bound(), 60)
     engine.share = 40

@@ -49,7 +49,7 @@ def bound_of(instance, options):
 
 @pytest.mark.parametrize("topple", [True, False])
 def test_more_cost_never_needs_fewer_steps_and_the_fitting_cost_is_the_largest_that_fits(topple):
-    for instance in generate("multi", 6, 2, 4, 1):
+    for instance in generate("multi", 6, buffers=2, count=4, seed=1):
         bound = bound_of(instance, PlanOptions(topple))
         steps = [bound.steps(cost) for cost in range(30)]
         assert steps == sorted(steps)

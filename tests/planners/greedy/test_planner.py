@@ -48,7 +48,7 @@ def test_every_committed_instance_gets_a_plan(suite, topple):
 
 @pytest.mark.parametrize("topple", [True, False])
 def test_a_thousand_blocks_get_a_plan(topple):
-    instance = next(generate("multi", 1000, 12, 1, 0))
+    instance = generate("multi", 1000)[0]
     for buffers in (12, 1):
         cut = dataclasses.replace(
             instance,
@@ -63,13 +63,13 @@ def test_past_the_deadline_there_is_the_first_pass_and_no_other(monkeypatch, pat
     passes = []
     run = Construction.run
     monkeypatch.setattr(Construction, "run", lambda self, *first: passes.append(self) or run(self, *first))
-    problem = Problem(next(generate("multi", 20, 0, 1, 0)), PlanOptions(topple=False))
+    problem = Problem(generate("multi", 20, buffers=0)[0], PlanOptions(topple=False))
     (plan,) = greedy_steps(problem, perf_counter(), patient=patient)
     assert plan
     assert len(passes) == 1
 
 
 def test_patient_passes_only_improve():
-    problem = Problem(next(generate("multi", 20, 0, 1, 0)), PlanOptions(topple=False))
+    problem = Problem(generate("multi", 20, buffers=0)[0], PlanOptions(topple=False))
     costs = [cost_of(steps) for steps in greedy_steps(problem, perf_counter() + 0.3, patient=True)]
     assert costs == sorted(set(costs), reverse=True)
