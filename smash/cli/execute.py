@@ -71,11 +71,11 @@ def command(
 
     tabletop = default_scene() if scene is None else read_scene(scene)
     tabletop.bind(problem)
-    from smash.execution.episode import Performed, episode_text
     from smash.execution.executor import Executor
     from smash.execution.policy import OPEN
     from smash.execution.viewing.capture import Capture
     from smash.experiments.episodes.replanning import replanner as make_replanner
+    from smash.records.episodes import Performed, episode_text
 
     capture = Capture(replay=replay, video=video, stills=stills, trajectory=trajectory)
     from rich.console import Console

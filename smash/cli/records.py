@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from smash.problem.errors import MalformedFile, SmashError, Unsupported
+from smash.problem.errors import MalformedFile, Unsupported
 
 if TYPE_CHECKING:
     from smash.experiments.sweeps.audit import Check
@@ -113,12 +113,7 @@ def export(results: Path, out: Path) -> None:
     try:
         import pyarrow  # noqa: F401
         from smash_analysis import export as tables
-        from smash_analysis.records import NoRecords
     except ImportError as error:
         raise Unsupported(f"analysis is not installed ({error}): pip install 'smash-testbed[analysis]'") from None
-    try:
-        files = tables.export(results, out)
-    except NoRecords as error:
-        raise SmashError(str(error)) from None
-    for file, rows in files:
+    for file, rows in tables.export(results, out):
         click.echo(f"{file}: {rows} rows")

@@ -26,12 +26,8 @@ def command(results: Path, out: Path | None) -> None:
     try:
         import jinja2  # noqa: F401
         import matplotlib  # noqa: F401
-        from smash_analysis.records import NoRecords
         from smash_analysis.report import page
     except ImportError as error:
         raise SmashError(f"analysis is not installed ({error}): pip install 'smash-testbed[analysis]'") from None
-    try:
-        made = page.make(results, out or results / "report", lambda line: click.echo(line, err=True))
-    except NoRecords as error:
-        raise SmashError(str(error)) from None
+    made = page.make(results, out or results / "report", lambda line: click.echo(line, err=True))
     click.echo(f"{made} ({made.stat().st_size / 1e6:.1f} MB), parts in {made.parent / 'parts'}")

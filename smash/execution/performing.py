@@ -14,7 +14,6 @@ import numpy as np
 from smash.execution.actions.kind import Geometry
 from smash.execution.actions.pick_and_place import OPEN_SECONDS, OPENINGS, Approach, Grip, Move, Segment
 from smash.execution.actions.registry import MOTIONS
-from smash.execution.episode import Performed
 from smash.execution.grounding import Grounder, Task
 from smash.execution.physics.world import World
 from smash.execution.policy import Policy
@@ -22,6 +21,7 @@ from smash.execution.readback import read_state
 from smash.execution.stopwatch import Stopwatch
 from smash.motion.errors import ExecutionFailure, NoIk, OutOfReach, Slip
 from smash.problem.model import TABLE, Aggregating, Pick, Place, State
+from smash.records.episodes import Performed
 
 GRASPED_WITHIN = 0.5
 """A held block's centre is within this share of its side of the tool."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 
@@ -15,27 +15,32 @@ from smash.problem.files.documents import write_text
 
 MANIFEST_FORMAT = "smash-manifest/1"
 
+T = TypeVar("T")
+
 
 def manifest(reproduction: Reproduction, planned: Sequence[Planned]) -> dict[str, Any]:
     """Return the `smash-manifest/1` object of a reproduction as it stands."""
     records = [entry.record for entry in planned if entry.record is not None]
-    return {
-        "format": MANIFEST_FORMAT,
-        "name": reproduction.steps.name,
-        "about": reproduction.steps.about,
-        "started": min((record.started for record in records), default=None),
-        "ended": max((record.ended for record in records if record.ended), default=None),
-        "seconds": round(sum(record.seconds for record in records), 1),
-        "whole": all(entry.plan in ("done", "kept") for entry in planned),
-        "commits": _distinct(record.commit for record in records),
-        "versions": _distinct(record.made_from.packages for record in records),
-        "machine": machine(),
-        "steps": [_step(entry) for entry in planned],
-    }
+    document: dict[str, Any] = msgspec.to_builtins(
+        {
+            "format": MANIFEST_FORMAT,
+            "name": reproduction.steps.name,
+            "about": reproduction.steps.about,
+            "started": min((record.started for record in records), default=None),
+            "ended": max((record.ended for record in records if record.ended), default=None),
+            "seconds": round(sum(record.seconds for record in records), 1),
+            "whole": all(entry.plan in ("done", "kept") for entry in planned),
+            "commits": _distinct(record.commit for record in records),
+            "versions": _distinct(record.made_from.packages for record in records),
+            "machine": machine(),
+            "steps": [_step(entry) for entry in planned],
+        }
+    )
+    return document
 
 
-def _distinct(values: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = []
+def _distinct(values: Iterable[T]) -> list[T]:
+    found: list[T] = []
     for value in values:
         if value not in found:
             found.append(value)

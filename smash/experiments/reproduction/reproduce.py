@@ -16,7 +16,7 @@ from functools import partial
 from pathlib import Path
 from threading import Event
 from time import monotonic
-from typing import Any, Literal, Protocol, cast
+from typing import Literal, Protocol, cast
 
 import msgspec
 
@@ -24,6 +24,7 @@ from smash.experiments.environment import commit, load
 from smash.experiments.isolation.lifetime import end_with_parent
 from smash.experiments.reproduction.stages import MadeFrom, Step, Steps, code_hash, file_hash, made_from
 from smash.problem.files.documents import convert, read_bytes, write_text
+from smash.records.record import Commit
 
 HEARTBEAT = 10.0
 """Seconds between two notes of how long a step has run, so that a kill loses no more of its time."""
@@ -66,7 +67,7 @@ class Record(msgspec.Struct):
     step: str
     state: State
     made_from: MadeFrom
-    commit: dict[str, Any]
+    commit: Commit
     started: str
     load: Load
     ended: str | None = None
