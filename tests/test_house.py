@@ -28,8 +28,23 @@ FLOORS = {
     "smash": GROUND | WORKS | {"smash.cli", "smash.experiments", "smash_analysis"},
 }
 """Room -> the rooms that it may import from, wherever in a module it does; `smash` is the door itself."""
-PLANNERS = ("protocol", "registry", "milp", "greedy", "precedence", "astar", "layered", "flow", "family", "portfolio")
-"""The rooms of `smash.planners`, from the ground: each may import from those before it."""
+ORDERS = {
+    "smash.planners": (
+        *("protocol", "registry", "milp", "greedy", "precedence", "astar", "layered", "flow", "family"),
+        "portfolio",
+    ),
+    "smash.records": ("outcomes", "locking", "record", "runs", "episodes", "trials", "files", "reading", "writing"),
+    "smash.experiments": (
+        *("environment", "isolation", "sweeps", "episodes", "best_known", "studies"),
+        "reproduction",
+    ),
+    "smash_analysis": (
+        *("statistics", "metrics", "tables", "charts", "command"),
+        *("ablation", "comparison", "scaling", "execution_tables", "execution_sweeps", "scoop", "readme", "export"),
+        "report",
+    ),
+}
+"""The rooms of a room, and its modules beside them, from the ground: each may import from those before it."""
 
 
 @cache
@@ -98,17 +113,18 @@ def test_no_import_runs_up_the_floors(name):
     assert up == []
 
 
-def test_the_planners_stand_in_one_order():
+@pytest.mark.parametrize("name", ORDERS)
+def test_the_rooms_of_a_room_stand_in_one_order(name):
     def place(module):
-        return PLANNERS.index(module.split(".")[2])
+        return ORDERS[name].index(module.removeprefix(f"{name}.").partition(".")[0])
 
-    rooms = {module: named for module, named in imports().items() if module.startswith("smash.planners.")}
-    assert {module.split(".")[2] for module in rooms} <= set(PLANNERS)
+    inside = {module: named for module, named in imports().items() if module.startswith(f"{name}.")}
+    assert {module.removeprefix(f"{name}.").partition(".")[0] for module in inside} <= set(ORDERS[name])
     up = [
         f"{module}:{line} imports {target}"
-        for module, named in rooms.items()
+        for module, named in inside.items()
         for target, line, _ in named
-        if target.startswith("smash.planners.") and place(target) > place(module)
+        if target in inside and place(target) > place(module)
     ]
     assert up == []
 

@@ -56,7 +56,7 @@ def scaling(results: Path) -> Drawing:
 
 DRAWN = {"docs/figures/ablation-layered-cold.png": ablation, "docs/figures/scaling-proofs.png": scaling}
 COPIED = {"docs/topple-map.png": "topple-map/map.png"}
-"""Pictures that a step has drawn itself."""
+"""Pictures that a stage has drawn itself."""
 
 
 def data_hash(*tables: pd.DataFrame) -> str:

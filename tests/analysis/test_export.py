@@ -1,5 +1,6 @@
 """Tidy tables: the same rows as Parquet and as CSV, one a run, an incumbent, a step."""
 
+import json
 import sys
 from pathlib import Path
 
@@ -84,6 +85,17 @@ def test_columns_and_their_types_do_not_hang_on_what_was_recorded(tables, tmp_pa
     for name in ("runs", "incumbents", "steps"):
         full, empty = (parquet.read_schema(at / f"{name}.parquet") for at in (tables, tmp_path / "unsolved" / "out"))
         assert full.equals(empty), name
+
+
+def test_a_plain_field_of_a_later_version_is_a_column(tmp_path):
+    later = record(0).document | {"robot": "another", "solved_by": {"name": "x"}}
+    write(tmp_path, [])
+    (tmp_path / "runs.jsonl").write_text(json.dumps(later) + "\n")
+    ended = CliRunner().invoke(smash, ["records", "export", str(tmp_path), "--out", str(tmp_path / "out")])
+    assert ended.exit_code == 0, ended.output
+    runs = pd.read_csv(tmp_path / "out" / "runs.csv")
+    assert runs["robot"].tolist() == ["another"]
+    assert "solved_by" not in runs.columns
 
 
 def test_any_json_string_is_a_name(tmp_path):

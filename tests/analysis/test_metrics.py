@@ -19,3 +19,13 @@ def test_a_metric_becomes_a_column_and_a_failing_one_is_named(monkeypatch, capsy
     assert table["metric.wrong"].isna().all()
     assert metrics.metric_names(table) == ["topples", "wrong"]
     assert "metric 'wrong' fails on 2 runs: KeyError" in capsys.readouterr().err
+
+
+def test_a_metric_is_given_the_record_as_plain_data(monkeypatch):
+    given = []
+    monkeypatch.setattr(metrics, "metrics", lambda: {"keep": given.append})
+    run = record(actions=[["pick", "b1", "s1"]], details={"nodes": 7})
+    assert runs_table([run])["metric.keep"].isna().all()
+    assert given == [run.document]
+    assert given[0]["actions"] == [["pick", "b1", "s1"]]
+    assert given[0]["commit"]["hash"] == "c"

@@ -19,14 +19,13 @@ from smash_analysis.statistics.effects import (
     ANY,
     Effect,
     planner_effects,
-    planner_table,
     proven_optima,
     reference_planner,
     topple_effects,
-    topple_table,
 )
 from smash_analysis.statistics.findings import THRESHOLD, cutoff_findings, smallest_buffers
 from smash_analysis.tables.cells import variant_cells
+from smash_analysis.tables.effects import planner_table, topple_table
 from smash_analysis.tables.readings import cutoff_check, readings
 from smash_analysis.tables.writing import SPREADS, with_spread
 
