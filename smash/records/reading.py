@@ -15,12 +15,11 @@ from smash.records.files import RUNS, R, RecordFile
 from smash.records.record import decoded
 from smash.records.runs import RunRecord
 
+NO_JSON = "no JSON"
+
 
 class NoRecords(MalformedFile):
     """A file without a whole record."""
-
-
-NO_JSON = "no JSON"
 
 
 @dataclass(frozen=True, slots=True)

@@ -70,10 +70,8 @@ def decoded(line: bytes, kind: type[T], escaped: bool = False) -> T:
     if not odd:
         try:
             return _kept(msgspec.json.decode(line, type=kind), "line", line)
-        except msgspec.ValidationError:
-            raise
         except msgspec.DecodeError:
-            pass  # what Python writes and strict JSON does not have: lone surrogates, NaN
+            pass  # what Python writes and strict JSON does not have (lone surrogates, NaN), or no record: see below
     document = json.loads(line)
     if odd:
         document = _encodable(document)

@@ -96,11 +96,13 @@ def test_without_a_whole_record_there_is_one_line(tmp_path):
 
 
 def test_what_python_writes_and_strict_json_does_not_have_is_read(tmp_path):
-    odd = record(0, instance="\ud800", details={"share": math.nan})
+    odd = record(0, instance="\ud800", details={"share": math.nan, "states": 10**30})
     write(tmp_path, [odd])
     (one,) = read(tmp_path, RUNS).records
     assert one.instance == "\ud800"
     assert math.isnan(one.details["share"])
+    assert one.details["states"] == 10**30
+    assert one.further == {}
 
 
 def test_a_record_is_a_plan_and_how_it_ended():
