@@ -14,7 +14,6 @@ from time import perf_counter
 import numpy as np
 
 from smash.execution.actions.arm_motions import ArmMotions
-from smash.execution.episode import Arrangement, Episode, Failure, Origin, Performed, Times, Totals
 from smash.execution.errors import Fell, NotAtGoal
 from smash.execution.grounding import Grounder, Task
 from smash.execution.performing import Performer
@@ -31,6 +30,7 @@ from smash.problem.files.plans import action_from_list, action_list
 from smash.problem.model import Action, Instance, PlanOptions, State
 from smash.problem.plan import Plan
 from smash.problem.rules import Law
+from smash.records.episodes import Arrangement, Episode, Failure, Origin, Performed, Times, Totals
 
 Replanner = Callable[[Instance, PlanOptions], Sequence[Action] | None]
 """From an observed instance and what plans may use to a plan for it, or None where the planner found none."""

@@ -14,7 +14,6 @@ import numpy as np
 from smash.execution.actions.arm_motions import OPEN_SECONDS, OPENINGS, Grip, Segment
 from smash.execution.actions.pick_and_place import Approach
 from smash.execution.actions.registry import MOTIONS
-from smash.execution.episode import Performed
 from smash.execution.errors import OutOfReach, Slip
 from smash.execution.grounding import Grounder, Task
 from smash.execution.physics.world import World
@@ -26,6 +25,7 @@ from smash.motion.errors import NoIk
 from smash.motion.move import Move
 from smash.problem.errors import ExecutionFailure
 from smash.problem.model import TABLE, Aggregating, Pick, Place, State
+from smash.records.episodes import Performed
 
 GRASPED_WITHIN = 0.5
 """A held block's centre is within this share of its side of the tool."""

@@ -9,8 +9,9 @@ from click.testing import CliRunner
 from smash.cli import smash
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.trials.estimates import Rate, read_estimates, write_estimates
-from smash.execution.trials.topple_map import Landing, Trial, draw, estimates, run_trial
+from smash.execution.trials.topple_map import draw, estimates, run_trial
 from smash.problem.errors import MalformedFile
+from smash.records.trials import Landing, Trial
 
 
 def trial(height, falling, good, seed=0):

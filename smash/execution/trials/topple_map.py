@@ -15,7 +15,6 @@ import numpy as np
 from smash.execution.actions.arm_motions import ArmMotions
 from smash.execution.actions.pick_and_place import PickAndPlace
 from smash.execution.actions.topple import strip
-from smash.execution.episode import Performed
 from smash.execution.grounding import Grounder, Task
 from smash.execution.performing import Performer
 from smash.execution.physics.world import World
@@ -33,59 +32,8 @@ from smash.problem.errors import ExecutionFailure
 from smash.problem.making import make_instance
 from smash.problem.model import PositionsGoal
 from smash.problem.rules import Law
-
-TRIAL_FORMAT = "smash-topple-trial/1"
-
-
-Key = tuple[str, int, int, int, int]
-"""What tells a trial from the others: the scene's fingerprint, stack, height of the cut, number falling, seed."""
-
-
-class Landing(msgspec.Struct, frozen=True):
-    """Where one block came to rest, in the push's frame, from the pile's middle [m]; whether it can be grasped."""
-
-    level: int
-    along: float
-    aside: float
-    graspable: bool
-
-
-class Trial(msgspec.Struct, frozen=True, kw_only=True):
-    """One topple.
-
-    Attributes:
-        layout: The scene's fingerprint.
-        stack: Index of the scene's stack.
-        height: Lowest level that falls, 1 is the bottom.
-        falling: Number of blocks that fall.
-        seed: Of the start poses.
-        moved: Largest displacement of a block below the cut [m].
-        stands: Whether the lower part still stands at its place, by the law's reading of the scene.
-        landings: One per toppled block, from the cut upward; empty where no push was found.
-        problem: Why there was no push, or nothing.
-    """
-
-    format: str = TRIAL_FORMAT
-    scene: str
-    layout: str = ""
-    stack: int
-    height: int
-    falling: int
-    seed: int
-    moved: float = 0.0
-    stands: bool = False
-    landings: tuple[Landing, ...] = ()
-    problem: str = ""
-
-    @property
-    def key(self) -> Key:
-        """What tells a trial from the others."""
-        return self.layout, self.stack, self.height, self.falling, self.seed
-
-    @property
-    def success(self) -> bool:
-        """Whether the plan could go on as the law says."""
-        return self.stands and bool(self.landings) and all(landing.graspable for landing in self.landings)
+from smash.records.episodes import Performed
+from smash.records.trials import Landing, Trial
 
 
 def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: int) -> Trial:

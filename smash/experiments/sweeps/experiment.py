@@ -14,7 +14,7 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Literal, TypeVar, cast
+from typing import TypeVar, cast
 
 import msgspec
 
@@ -29,11 +29,10 @@ from smash.problem.files.instances import instance_document
 from smash.problem.model import Instance, PlanOptions
 from smash.problem.problem import Problem
 from smash.problem.sets.suites import read_suite, suite_names
+from smash.records.runs import RunKind
 
-RunKind = Literal["anytime", "budget", "cutoff"]
 FURTHER = tuple(name for name in FAMILY if name != "topple")
 """Aggregating actions that a variant can leave out by `-no-NAME`."""
-"""`anytime`: stands for every smaller budget too; `budget`: for its own alone; `cutoff`: checks that reading."""
 
 INSTANCES = "instances"
 SETS = "sets.json"

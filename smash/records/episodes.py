@@ -1,4 +1,4 @@
-"""What an execution is recorded as: `smash-episode/1`.
+"""An execution, `smash-episode/1`, and its record in `episodes.jsonl`, `smash-episode-run/1`.
 
 Times are in seconds: `offline` and `online` are wall time of motion planning before and during the episode, the same
 with `_cpu` is what the planning thread computed (a busy machine does not lengthen it), `execution` is simulated time,
@@ -8,11 +8,15 @@ instance, plan, scene, seed and policy.
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 import msgspec
 
-EPISODE_FORMAT = "smash-episode/1"
+from smash.problem.plan import Status
+from smash.records.record import Commit, Machine, Record
+
+EPISODE_FORMAT: Final = "smash-episode/1"
+EPISODE_RUN_FORMAT: Final = "smash-episode-run/1"
 
 Origin = Literal["plan", "replan", "recovery"]
 
@@ -112,6 +116,44 @@ class Episode(msgspec.Struct, kw_only=True):
             for measured in ("offline", "offline_cpu", "online", "online_cpu", "task"):
                 times.pop(measured, None)
         return document
+
+
+class EpisodeRecord(Record, kw_only=True, frozen=True):
+    """One episode of a sweep's plan: the plan's run, how it was carried out, where, and the episode itself.
+
+    Attributes:
+        key: Names it for good: the run's key, policy, seed, scene.
+        run: Key of the run whose plan it carries out; what was planned stands beside it.
+        scene: Name of the scene file; None for the built-in scene.
+        depth: Of a single target in its start pile, the top being 1; None for other goals.
+        episode: None where its process ended without one; `problem` says why.
+    """
+
+    format: Literal["smash-episode-run/1"]
+    key: str
+    run: str
+    instance: str
+    suite: str
+    label: str
+    variant: str
+    policy: str
+    seed: int
+    scene: str | None
+    blocks: int
+    depth: int | None
+    cost: int
+    status: Status
+    budget: float
+    first_plan_seconds: float | None
+    best_plan_seconds: float | None
+    episode: Episode | None
+    problem: str
+    wall_seconds: float
+    started: str
+    load_average: tuple[float, float]
+    commit: Commit
+    machine: Machine
+    versions: dict[str, str]
 
 
 def episode_text(episode: Episode) -> str:

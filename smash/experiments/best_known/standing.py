@@ -9,18 +9,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import msgspec
 
 from smash.experiments.sweeps.experiment import instance_hash, variant_options
-from smash.experiments.sweeps.records import recorded_plan
 from smash.problem.errors import MalformedFile
 from smash.problem.files.plans import read_plan
 from smash.problem.model import Action, Instance, PlanOptions
 from smash.problem.rules import Law
 from smash.problem.sets.open_instances import FAMILIES
 from smash.problem.sets.suites import read_suite
+from smash.records.runs import RunRecord
 
 PLANS = "plans"
 """The directory of the plans, beside the list."""
@@ -146,26 +145,26 @@ class BestKnown:
                 self.entries[instance, variant] = msgspec.structs.replace(entry, lower_bound=bound, bound=found)
         return improved
 
-    def offer_record(self, record: dict[str, Any]) -> list[Entry] | None:
+    def offer_record(self, record: RunRecord) -> list[Entry] | None:
         """Take the plan and the bound of a run; None where it is not of an open instance as it is committed."""
-        instance = open_instances().get(record["instance"])
-        if instance is None or record["instance_hash"] != instance_hash(instance):
+        instance = open_instances().get(record.instance)
+        if instance is None or record.instance_hash != instance_hash(instance):
             return None
-        self.add_variant(instance.name, record["variant"])
-        if record["outcome"] == "refused":
+        self.add_variant(instance.name, record.variant)
+        if record.outcome == "refused":
             return []
-        plan = recorded_plan(record)
+        plan = record.plan
         source = Found(
-            by=record["label"],
+            by=record.label,
             origin=plan.incumbents[-1].origin if plan.incumbents else "",
-            version=record["versions"].get("smash-testbed", ""),
-            commit=((record["commit"] or {}).get("hash") or "")[:10],
+            version=record.versions.get("smash-testbed", ""),
+            commit=(record.commit.hash or "")[:10],
             seconds=round(plan.incumbents[-1].seconds, 2) if plan.incumbents else None,
-            date=record["started"][:10],
+            date=record.started[:10],
         )
         improved = self.offer_plan(instance.name, plan.actions, source) if plan.actions is not None else []
         if plan.lower_bound is not None:
-            seconds = None if record["wall_seconds"] is None else round(record["wall_seconds"], 2)
+            seconds = None if record.wall_seconds is None else round(record.wall_seconds, 2)
             prover = msgspec.structs.replace(source, origin=plan.bound_origin or "", seconds=seconds)
             improved += self.offer_bound(instance.name, plan.options, plan.lower_bound, prover)
         return improved

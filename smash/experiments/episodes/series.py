@@ -10,22 +10,24 @@ import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from threading import Event
 from time import perf_counter
-from typing import Any
+
+import msgspec
 
 from smash.experiments.environment import commit, load, machine, versions
 from smash.experiments.episodes.worker import Crew, EpisodeLost
-from smash.experiments.sweeps.records import RUNS, Records, read_records
 from smash.problem.errors import SmashError
 from smash.problem.files.instances import instance_from_document
 from smash.problem.model import Instance, PositionsGoal
+from smash.records.episodes import EPISODE_RUN_FORMAT, Episode, EpisodeRecord
+from smash.records.files import RUNS
+from smash.records.reading import read
+from smash.records.runs import RunRecord
+from smash.records.writing import Writer
 
-EPISODE_RUN_FORMAT = "smash-episode-run/1"
-EPISODES = "episodes.jsonl"
 REPLAYS = "replays"
 POLICIES = ("replan", "open")
 """`replan`: the executor repairs, retries and replans; `open`: the paper's open pipeline."""
@@ -33,8 +35,7 @@ REPLAN_BUDGET = 10.0
 """Seconds of each replanning."""
 
 
-@dataclass(frozen=True, slots=True)
-class EpisodeRun:
+class EpisodeRun(msgspec.Struct, frozen=True):
     """One episode to be run.
 
     Attributes:
@@ -46,7 +47,7 @@ class EpisodeRun:
         replay: The page to write, or None.
     """
 
-    record: dict[str, Any]
+    record: RunRecord
     seed: int
     policy: str
     scene: str | None
@@ -56,7 +57,7 @@ class EpisodeRun:
     @property
     def key(self) -> str:
         """Names the episode for good."""
-        return f"{self.record['key']}/{self.policy}/{self.seed}" + (f"/{self.told}" if self.told else "")
+        return f"{self.record.key}/{self.policy}/{self.seed}" + (f"/{self.told}" if self.told else "")
 
 
 def told_apart(scene: str | os.PathLike[str]) -> str:
@@ -90,37 +91,42 @@ def episode_runs(
         MalformedFile: where the records are damaged.
         SmashError: where nobody is labelled so.
     """
-    plans = [record for record in read_records(results / RUNS) if record["actions"] is not None]
-    plans = [record for record in plans if record["outcome"] != "refused" and record["kind"] != "cutoff"]
-    known = {record["label"] for record in plans}
+    reading = read(results, RUNS)
+    reading.refuse_damage()
+    plans = [run for run in reading.records if run.actions is not None]
+    plans = [run for run in plans if run.outcome != "refused" and run.kind != "cutoff"]
+    known = {run.label for run in plans}
     for label in labels:
         if label not in known:
-            raise SmashError(f"{results / RUNS}: no plan by {label!r}; there are plans by {', '.join(sorted(known))}")
-    plans = [record for record in plans if not labels or record["label"] in labels]
+            raise SmashError(f"{reading.path}: no plan by {label!r}; there are plans by {', '.join(sorted(known))}")
+    plans = [record for record in plans if not labels or record.label in labels]
     if told is None and scene is not None:
         told = told_apart(scene)
     runs = [EpisodeRun(record, seed, policy, scene, told) for seed in seeds for record in plans for policy in policies]
-    return [replace(run, replay=_replay(results, run)) if replays and run.seed == seeds[0] else run for run in runs]
+    if not replays:
+        return runs
+    replace = msgspec.structs.replace
+    return [replace(run, replay=_replay(results, run)) if run.seed == seeds[0] else run for run in runs]
 
 
 def _replay(results: Path, run: EpisodeRun) -> str:
     """The page of an episode: instance, planner, variant and policy in words that any file system takes."""
-    words = (run.record["instance"], run.record["label"], run.record["variant"], run.policy)
+    words = (run.record.instance, run.record.label, run.record.variant, run.policy)
     name = re.sub(r"[^A-Za-z0-9.-]+", "-", "_".join(words)).strip("-")
     return str((results / REPLAYS / f"{name}.html").resolve())
 
 
 def run_all(
     runs: Iterable[EpisodeRun],
-    records: Records,
+    records: Writer[EpisodeRecord],
     jobs: int,
     stop: Event,
-    ended: Callable[[EpisodeRun, dict[str, Any]], None],
+    ended: Callable[[EpisodeRun, EpisodeRecord], None],
 ) -> None:
     """Run what is not recorded yet, `jobs` at a time; where `stop` is set, leave at once what is under way."""
     left = [run for run in runs if run.key not in records.finished]
     with Crew(jobs) as crew, ThreadPoolExecutor(jobs) as pool:
-        waiting: dict[Future[dict[str, Any]], EpisodeRun] = {}
+        waiting: dict[Future[EpisodeRecord], EpisodeRun] = {}
         source: Iterator[EpisodeRun] = iter(left)
         while True:
             while len(waiting) < jobs and not stop.is_set() and (run := next(source, None)) is not None:
@@ -137,51 +143,50 @@ def run_all(
                     ended(run, record)
 
 
-def run_apart(run: EpisodeRun, crew: Crew) -> dict[str, Any]:
+def run_apart(run: EpisodeRun, crew: Crew) -> EpisodeRecord:
     """Run one episode in a process of the crew; the record's `episode` is None where that process ended badly."""
     started, begun, before = datetime.now(UTC), perf_counter(), load()
-    question = {"record": run.record, "seed": run.seed, "policy": run.policy, "scene": run.scene, "replay": run.replay}
     episode, problem = None, ""
     try:
-        episode = crew.ask(question)
+        episode = crew.ask(run)
     except EpisodeLost as loss:
         problem = str(loss)
     return _record(run, episode, problem, started, perf_counter() - begun, before)
 
 
 def _record(
-    run: EpisodeRun, episode: dict[str, Any] | None, problem: str, started: datetime, seconds: float, before: float
-) -> dict[str, Any]:
+    run: EpisodeRun, episode: Episode | None, problem: str, started: datetime, seconds: float, before: float
+) -> EpisodeRecord:
     plan = run.record
-    instance = instance_from_document(plan["instance_document"])
-    incumbents = plan["incumbents"]
-    return {
-        "format": EPISODE_RUN_FORMAT,
-        "key": run.key,
-        "run": plan["key"],
-        "instance": plan["instance"],
-        "suite": plan["suite"],
-        "label": plan["label"],
-        "variant": plan["variant"],
-        "policy": run.policy,
-        "seed": run.seed,
-        "scene": None if run.scene is None else Path(run.scene).stem,
-        "blocks": len(instance.blocks),
-        "depth": target_depth(instance),
-        "cost": plan["cost"],
-        "status": plan["status"],
-        "budget": plan["budget"],
-        "first_plan_seconds": incumbents[0][0] if incumbents else None,
-        "best_plan_seconds": incumbents[-1][0] if incumbents else None,
-        "episode": episode,
-        "problem": problem,
-        "wall_seconds": seconds,
-        "started": started.isoformat(timespec="milliseconds"),
-        "load_average": [before, load()],
-        "commit": commit(),
-        "machine": machine(),
-        "versions": versions("greedy") | execution_versions(),
-    }
+    instance = instance_from_document(plan.instance_document)
+    assert plan.cost is not None  # episodes are of plans
+    return EpisodeRecord(
+        format=EPISODE_RUN_FORMAT,
+        key=run.key,
+        run=plan.key,
+        instance=plan.instance,
+        suite=plan.suite,
+        label=plan.label,
+        variant=plan.variant,
+        policy=run.policy,
+        seed=run.seed,
+        scene=None if run.scene is None else Path(run.scene).stem,
+        blocks=len(instance.blocks),
+        depth=target_depth(instance),
+        cost=plan.cost,
+        status=plan.status,
+        budget=plan.budget,
+        first_plan_seconds=plan.incumbents[0][0] if plan.incumbents else None,
+        best_plan_seconds=plan.incumbents[-1][0] if plan.incumbents else None,
+        episode=episode,
+        problem=problem,
+        wall_seconds=seconds,
+        started=started.isoformat(timespec="milliseconds"),
+        load_average=(before, load()),
+        commit=commit(),
+        machine=machine(),
+        versions=versions("greedy") | execution_versions(),
+    )
 
 
 def execution_versions() -> dict[str, str]:
