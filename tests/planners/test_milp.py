@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from smash.planners.milp.arrays import MilpBuilder
+from smash.planners.milp.arrays import MilpBuilder, SparseRows
 from smash.planners.milp.solvers import gurobi, highs
 from smash.problem import MalformedFile
 
@@ -59,3 +59,18 @@ def test_a_model_is_written_with_the_names_of_its_columns(tmp_path):
     assert "take_3" in (tmp_path / "m.mps").read_text()
     with pytest.raises(MalformedFile):
         highs.write(cover(), tmp_path / "m.txt")
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize(("rows", "columns", "entries"), [(0, 0, 0), (3, 4, 0), (5, 3, 40), (20, 30, 50)])
+def test_a_matrix_of_entries_adds_up_what_lies_at_one_place(seed, rows, columns, entries):
+    draw = np.random.default_rng(seed)
+    at, where = draw.integers(0, max(rows, 1), entries), draw.integers(0, max(columns, 1), entries)
+    values, vector = draw.choice([-1.0, 1.0, 2.0], entries), draw.integers(-5, 5, columns).astype(float)
+    dense = np.zeros((rows, columns))
+    np.add.at(dense, (at, where), values)
+    matrix = SparseRows.of_entries(at, where, values, (rows, columns))
+    assert np.array_equal(matrix @ vector, dense @ vector)
+    spans = [matrix.indices[begin:end] for begin, end in zip(matrix.indptr, matrix.indptr[1:], strict=False)]
+    assert all((np.diff(span) > 0).all() for span in spans)
+    assert matrix.nnz == len({*zip(at, where, strict=True)}) == len(matrix.indices)

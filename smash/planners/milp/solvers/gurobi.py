@@ -30,8 +30,9 @@ def solve(
     """
     try:
         import gurobipy
+        import scipy.sparse  # noqa: F401
     except ImportError:
-        raise Unsupported("gurobipy is not installed (the extra `gurobi`)") from None
+        raise Unsupported("gurobipy or scipy is not installed (the extra `gurobi`)") from None
     began = perf_counter()
     try:
         with gurobipy.Env(params={"OutputFlag": 0}) as environment, gurobipy.Model(env=environment) as program:
@@ -52,6 +53,10 @@ def solve(
 
 
 def _add_rows(program: Any, columns: Any, model: Milp) -> None:
+    from scipy.sparse import csr_array
+
+    compressed = (model.matrix.data, model.matrix.indices, model.matrix.indptr)
+    matrix = csr_array(compressed, shape=(model.rows, model.columns))
     equal = model.row_lower == model.row_upper
     below = ~equal & np.isfinite(model.row_upper)
     above = ~equal & np.isfinite(model.row_lower)
@@ -61,7 +66,7 @@ def _add_rows(program: Any, columns: Any, model: Milp) -> None:
         (above, ">", model.row_lower),
     ):
         if chosen.any():
-            program.addMConstr(model.matrix[chosen], columns, sense, side[chosen])
+            program.addMConstr(matrix[chosen], columns, sense, side[chosen])
 
 
 def _callback(
