@@ -12,14 +12,13 @@ import re
 import shlex
 import sys
 from collections.abc import Sequence
-from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import cast
 
 import msgspec
-from smash_baselines.domains import DOMAINS
 
+import smash
 from smash.experiments.environment import versions
 from smash.planners.registry import DEFAULT
 from smash.problem.errors import MalformedFile
@@ -28,8 +27,8 @@ from smash.problem.files.documents import convert, parse_toml, read_bytes
 PROGRAMS = {"smash": (sys.executable, "-m", "smash"), "python": (sys.executable,)}
 PACKAGES = ("coal", "matplotlib", "ompl", "pandas", "pin", "pybullet", "toppra")
 """Distributions that decide what is made, beside those that decide what a planner answers."""
-CODE = ("smash", "smash_baselines", "smash_analysis")
-"""The packages whose content decides what a command makes, with the PDDL of `DOMAINS`."""
+CODE = ("smash", "baselines", "analysis", "domains")
+"""The folders whose content decides what a command makes."""
 
 
 class Step(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
@@ -182,11 +181,11 @@ def made_from(step: Step, here: Path, code: str, uses: dict[str, str]) -> MadeFr
 def code_hash() -> str:
     """Return a hash of all of this code as it stands, committed or not."""
     total = hashlib.sha256()
-    folders = {name: Path(cast(str, import_module(name).__file__)).parent for name in CODE}
-    for name, folder in (folders | {"domains": DOMAINS}).items():
-        for file in sorted(folder.rglob("*")):
+    root = Path(smash.__file__).parent.parent
+    for folder in CODE:
+        for file in sorted((root / folder).rglob("*")):
             if file.is_file() and "__pycache__" not in file.parts:
-                total.update(f"{name}/{file.relative_to(folder)}\0{file_hash(file)}\n".encode())
+                total.update(f"{file.relative_to(root)}\0{file_hash(file)}\n".encode())
     return total.hexdigest()
 
 
