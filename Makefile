@@ -1,55 +1,69 @@
-# `make help` lists what there is. Every target sets up `.venv` first where it is missing.
-PYTHON ?= python3.11
+# `make help` lists what there is. A target sets up `.venv` first, with the packages that it needs: `.ci/environment`
+# keeps what is there and fits. CPython 3.11, 3.13 or 3.12 is looked for, in this order; `make PYTHON=... TARGET` names one.
 VENV := .venv
 BIN := $(VENV)/bin
-STAMP := $(VENV)/.installed
 
 SCENES := friction-0.10 friction-0.30 friction-0.40 friction-0.50
 
 .DEFAULT_GOAL := help
-.PHONY: help test test-slow test-timing lint suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full friction topple-map scoop reproduce reproduce-full results
+.NOTPARALLEL:
+.PHONY: help install install-all clean test test-slow test-timing lint ci suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full friction topple-map scoop reproduce reproduce-full results physics
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
 
-$(STAMP): pyproject.toml constraints.txt
-	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[analysis,pddl,execution,cluster,dev]'
-	$(BIN)/python -m smash.planners.astar.warm
-	touch $@
+needs-%: # .venv with these extras, as in needs-analysis-pddl; the packages for planning are always there
+	@.ci/environment $(VENV) $(subst -, ,$(filter-out planning,$*))
 
-test: $(STAMP) ## run the tests (minutes); slow ones with `make test-slow`
+physics: needs-execution
+	@$(BIN)/python -c 'import pybullet' 2>/dev/null || { echo 'smash: PyBullet has no wheels for the Python of $(VENV); make PYTHON=python3.11 $(MAKECMDGOALS)' >&2; exit 6; }
+
+install: needs-planning ## set up .venv for planning
+	@echo 'smash: ready. $(BIN)/smash plan examples/figure1.json (or first: source $(BIN)/activate)'
+
+install-all: needs-all-dev ## set up .venv with all that its Python can have, and the tools of developers
+	@echo 'smash: ready. $(BIN)/smash plan examples/figure1.json (or first: source $(BIN)/activate)'
+
+clean: ## remove what was set up, compiled and built; runs/ stays
+	rm -rf $(VENV) .venvs build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+test: needs-all-dev ## run the tests (minutes); slow ones with `make test-slow`
 	$(BIN)/python -m pytest
 
-test-slow: $(STAMP) ## run the slow tests too
+test-slow: needs-all-dev ## run the slow tests too
 	$(BIN)/python -m pytest -m 'not timing' --timeout=900
 
-test-timing: $(STAMP) ## run the tests of budgets and of times; nothing else should run beside them
+test-timing: needs-all-dev ## run the tests of budgets and of times; nothing else should run beside them
 	$(BIN)/python -m pytest -m timing --timeout=900
 
-lint: $(STAMP) ## ruff and mypy, both strict
+lint: needs-all-dev ## ruff and mypy, both strict, and dead code
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/vulture
 
-suites: $(STAMP) ## make the committed instance sets again, byte for byte
+ci: ## lint, and the tests and the wheel on every Python of 3.11, 3.12 and 3.13 that is installed (minutes)
+	.ci/run
+
+suites: needs-planning ## make the committed instance sets again, byte for byte
 	$(BIN)/python -m smash.problem.sets.make_suites
 
-ablation: $(STAMP) ## the paper's budget x buffer heatmaps on a stated subset (about 12 minutes on 2 cores)
+ablation: needs-analysis-pddl ## the paper's budget x buffer heatmaps on a stated subset (about 12 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/ablation.toml --out runs/ablation
 	$(BIN)/python -m smash_analysis.ablation runs/ablation
 
-ablation-full: $(STAMP) ## the paper's whole grid: 9 blocks, 20 instances, buffers 0 to 12, budgets to 30 s (hours)
+ablation-full: needs-analysis-pddl ## the paper's whole grid: 9 blocks, 20 instances, buffers 0 to 12, budgets to 30 s (hours)
 	$(BIN)/python -m smash sweep experiments/ablation-full.toml --out runs/ablation-full --dry-run
 	$(BIN)/python -m smash sweep experiments/ablation-full.toml --out runs/ablation-full
 	$(BIN)/python -m smash_analysis.ablation runs/ablation-full
 
-tables: $(STAMP) ## the paper's Tables I and II in simulation, a stated subset (at most 30 minutes on 2 cores)
+tables: needs-analysis-execution-pddl physics ## the paper's Tables I and II in simulation, a stated subset (at most 30 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/tables-subset.toml --out runs/tables-subset
 	$(BIN)/python -m smash episodes runs/tables-subset --policy replan --policy open --jobs 2
 	$(BIN)/python -m smash_analysis.execution_tables runs/tables-subset
 
-tables-full: $(STAMP) ## both tables whole: 20 instances a setting, up to 3 physics seeds (hours, said first; it can be resumed)
+tables-full: needs-analysis-execution-pddl physics ## both tables whole: 20 instances a setting, up to 3 physics seeds (hours, said first; it can be resumed)
 	$(BIN)/python -m smash sweep experiments/tables-full.toml --out runs/tables-full --dry-run
 	$(BIN)/python -m smash sweep experiments/tables-full.toml --out runs/tables-full
 	$(BIN)/python -m smash episodes runs/tables-full --label smash --policy replan --policy open --jobs 2
@@ -57,12 +71,12 @@ tables-full: $(STAMP) ## both tables whole: 20 instances a setting, up to 3 phys
 	$(BIN)/python -m smash episodes runs/tables-full --label smash --policy replan --seeds 3 --jobs 2
 	$(BIN)/python -m smash_analysis.execution_tables runs/tables-full
 
-scoop: $(STAMP) ## the paper's scoop: pick and place alone, with topple, scoop, lift; table and 3D replays (about 10 minutes)
+scoop: needs-analysis-execution-pddl physics ## the paper's scoop: pick and place alone, with topple, scoop, lift; table and 3D replays (about 10 minutes)
 	$(BIN)/python -m smash sweep experiments/scoop.toml --out runs/scoop
 	$(BIN)/python -m smash episodes runs/scoop --label smash --seeds 3 --scene examples/scoop-scene.toml --replays --jobs 2
 	$(BIN)/python -m smash_analysis.scoop runs/scoop
 
-friction: $(STAMP) ## the same plans under other friction, and topples by size (about 25 minutes on 2 cores)
+friction: needs-analysis-execution physics ## the same plans under other friction, and topples by size (about 25 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/friction.toml --out runs/friction
 	$(BIN)/python -m smash episodes runs/friction --policy replan --policy open --jobs 2
 	$(BIN)/python -m smash topple-map --highest-cut 3 --jobs 2 --out runs/friction/default
@@ -72,37 +86,34 @@ friction: $(STAMP) ## the same plans under other friction, and topples by size (
 	    || exit 1; done
 	$(BIN)/python -m smash_analysis.execution_sweeps runs/friction $(addprefix runs/friction/,default $(SCENES))
 
-topple-map: $(STAMP) ## where toppled blocks land, per cut height and number (minutes)
+topple-map: needs-analysis-execution physics ## where toppled blocks land, per cut height and number (minutes)
 	$(BIN)/python -m smash topple-map --jobs 2 --out runs/topple-map
 
-bench: $(STAMP) ## first plans, proofs, HiGHS against Gurobi, hundreds of blocks: the README's tables (3 minutes)
-	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt gurobipy
+bench: needs-gurobi ## first plans, proofs, HiGHS against Gurobi, hundreds of blocks: the README's tables (3 minutes)
 	$(BIN)/python -m smash.experiments.studies.benchmark
 
-scaling: $(STAMP) ## time over 4 to 1,000 blocks, per planner: curves and exponents (hours; it can be resumed)
+scaling: needs-analysis ## time over 4 to 1,000 blocks, per planner: curves and exponents (hours; it can be resumed)
 	$(BIN)/smash scaling --out runs/scaling
 	$(BIN)/python -m smash_analysis.scaling runs/scaling
 
-best-known: $(STAMP) ## best known costs and bounds of the open instances, and what is still open (20 minutes)
+best-known: needs-pddl ## best known costs and bounds of the open instances, and what is still open (20 minutes)
 	$(BIN)/python -m smash sweep experiments/open.toml --out runs/open
 	$(BIN)/python -m smash best-known update runs/open
 	$(BIN)/python -m smash best-known table --into docs/open-instances.md
 
-compare: $(STAMP) ## all planners, gadget and PDDL, on a stated subset of the committed sets (at most 30 minutes on 2 cores)
+compare: needs-analysis-pddl ## all planners, gadget and PDDL, on a stated subset of the committed sets (at most 30 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/compare.toml --out runs/compare
 	$(BIN)/python -m smash_analysis.comparison runs/compare
 
-compare-full: $(STAMP) ## all planners on all of the committed sets (a day or more; says how many hours first)
+compare-full: needs-analysis-pddl ## all planners on all of the committed sets (a day or more; says how many hours first)
 	$(BIN)/python -m smash sweep experiments/compare-full.toml --out runs/compare-full --dry-run
 	$(BIN)/python -m smash sweep experiments/compare-full.toml --out runs/compare-full
 	$(BIN)/python -m smash_analysis.comparison runs/compare-full
 
-reproduce: $(STAMP) ## every table and figure, the paper's and ours, on stated small grids (about an hour; it can be resumed)
-	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt gurobipy
+reproduce: needs-all physics ## every table and figure, the paper's and ours, on stated small grids (about an hour; it can be resumed)
 	$(BIN)/python -m smash reproduce
 
-reproduce-full: $(STAMP) ## the same on the whole grids (days; says how many hours first; it can be resumed)
-	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt gurobipy
+reproduce-full: needs-all physics ## the same on the whole grids (days; says how many hours first; it can be resumed)
 	$(BIN)/python -m smash reproduce --full
 
 results: reproduce ## keep the products of `make reproduce` in results/, and draw the README's figures from them

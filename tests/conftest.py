@@ -1,13 +1,51 @@
-"""Fixtures shared by the rooms."""
+"""Fixtures shared by the rooms, and what becomes of tests whose packages are not installed."""
 
 import json
+import re
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
+from smash.problem.extras import EXTRAS
 from tests.experiments import troubled
 
 ROOT = Path(__file__).parent.parent
+LACKING = {module: extra for extra, modules in EXTRAS.items() for module in modules if find_spec(module) is None}
+"""Modules that an extra brings and that are not installed here: tests that import them are skipped, and say so."""
+
+
+class ModuleOfTests(pytest.Module):
+    """A file of tests; it is skipped whole where its imports lack a module of an extra."""
+
+    def collect(self):
+        """Collect its tests."""
+        try:
+            return super().collect()
+        except self.CollectError as error:
+            _skip_without(re.findall(r"No module named '(\w+)", str(error)))
+            raise
+
+
+def _skip_without(modules):
+    for module in modules:
+        if module in LACKING:
+            pytest.skip(f"{module} is not installed (the extra {LACKING[module]})", allow_module_level=True)
+
+
+def pytest_pycollect_makemodule(module_path, parent):
+    """Make every file of tests one that knows of extras."""
+    return ModuleOfTests.from_parent(parent, path=module_path)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call():
+    """Skip a test that imports, on its way, a module of an extra that is not installed."""
+    try:
+        return (yield)
+    except ModuleNotFoundError as error:
+        _skip_without([(error.name or "").partition(".")[0]])
+        raise
 
 
 @pytest.fixture

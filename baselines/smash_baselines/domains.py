@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from smash.problem.files.data import data_folder
 
-_HERE = Path(__file__).resolve()
-_SHIPPED = _HERE.with_name("domains")
-DOMAINS = _SHIPPED if _SHIPPED.is_dir() else _HERE.parents[2] / "domains"
+DOMAINS = data_folder(__file__, "domains", in_tree="domains")
 """The directory of the domains; its `parts` are put together into the domain of an instance."""

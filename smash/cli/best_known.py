@@ -16,7 +16,7 @@ list_option = click.option(
     "directory",
     type=click.Path(path_type=Path, file_okay=False),
     metavar="DIR",
-    help="Another list (default: results/best-known of the repository).",
+    help="Another list (default: results/best-known of the repository, or the one installed).",
 )
 
 
@@ -46,12 +46,12 @@ def update(results: tuple[Path, ...], directory: Path | None) -> None:
     Example:
       smash best-known update runs/open
     """
-    from smash.experiments.best_known.files import FILE, LIST, read_best_known, write_best_known
+    from smash.experiments.best_known.files import FILE, list_to_write, read_best_known, write_best_known
     from smash.experiments.best_known.standing import BestKnown
     from smash.records.files import RUNS
     from smash.records.reading import read
 
-    directory = directory or LIST
+    directory = list_to_write(directory)
     known = read_best_known(directory) if (directory / FILE).is_file() else BestKnown(directory)
     improved = others = 0
     for folder in results:
@@ -83,7 +83,7 @@ def add(plan: Path, by: str, certificate: Path | None, directory: Path | None) -
     Example:
       smash best-known add mine.json --by "A. Researcher, my-planner 1.2"
     """
-    from smash.experiments.best_known.files import LIST, read_best_known, write_best_known
+    from smash.experiments.best_known.files import list_to_write, read_best_known, write_best_known
     from smash.experiments.best_known.standing import Found
     from smash.experiments.best_known.submission import accept
     from smash.problem.certificate import read_certificate
@@ -92,7 +92,7 @@ def add(plan: Path, by: str, certificate: Path | None, directory: Path | None) -
     proof = None if certificate is None else read_certificate(certificate)
     seconds = submitted.incumbents[-1].seconds if submitted.incumbents else None
     today = datetime.now(UTC).date().isoformat()
-    known = read_best_known(directory or LIST)
+    known = read_best_known(list_to_write(directory))
     improved = accept(known, submitted, Found(by, submitted.planner, seconds=seconds, date=today), proof)
     if not improved:
         click.echo("nothing new: the list has it, or better")

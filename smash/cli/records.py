@@ -111,7 +111,7 @@ def export(results: Path, out: Path) -> None:
     Example:
       smash records export runs/ablation --out runs/ablation/tables
     """
-    require("smash records export", *TABLES)
+    require("smash records export", *TABLES, "pyarrow")
     from smash_analysis import export as tables
 
     for file, rows in tables.export(results, out):

@@ -61,10 +61,6 @@ class Gadget:
         """The numbers of the aggregates into whose gathering nodes pebbles are staged before."""
         return tuple(number for number, aggregate in enumerate(self.aggregates) if aggregate.locks is not None)
 
-    def has(self, key: NodeKey) -> bool:
-        """Return whether there is such a node."""
-        return key in self._number
-
     def node(self, kind: NodeKind, location: str | None = None, index: int = 0) -> int:
         """Return the number of a node.
 

@@ -7,17 +7,18 @@ from importlib.util import find_spec
 from smash.problem.errors import Unsupported
 
 EXTRAS: dict[str, tuple[str, ...]] = {
-    "analysis": ("matplotlib", "networkx", "pandas", "pyarrow", "jinja2"),
+    "analysis": ("matplotlib", "pandas", "jinja2"),
+    "parquet": ("pyarrow",),
     "pddl": ("unified_planning", "up_fast_downward", "up_symk", "up_enhsp", "up_aries"),
-    "execution": ("pybullet", "ompl", "pinocchio", "coal", "toppra", "imageio"),
+    "execution": ("pybullet", "ompl", "pinocchio", "coal", "toppra", "imageio", "meshcat", "scipy"),
     "cluster": ("dask", "distributed"),
-    "gurobi": ("gurobipy",),
+    "gurobi": ("gurobipy", "scipy"),
 }
 """Extra -> the modules that come with it."""
 
 EXECUTION = ("pybullet", "ompl", "pinocchio", "coal", "toppra")
 """What an episode is carried out with."""
-TABLES = ("pandas", "matplotlib", "jinja2", "pyarrow")
+TABLES = ("pandas", "matplotlib", "jinja2")
 """What records become tables, charts and pages with."""
 
 

@@ -1,13 +1,11 @@
 import numpy as np
 import pytest
 
-from smash.motion.obstacles import Scene
 from smash.motion.paths import Path, round_corners
 from smash.motion.robot import ACCELERATION, READY, VELOCITY
 from smash.motion.timing import Pace, time_path, trapezoid
 
 CORNERS = np.stack([READY, READY + 0.4, READY + np.array([0.8, 0.2, 0, 0.1, 0, 0.3, -0.4])])
-EMPTY = Scene.of_boxes([], np.empty((0, 3)), 0.0)
 
 
 @pytest.mark.parametrize("path", [Path(CORNERS[:2], "straight"), Path(CORNERS, "tree")])

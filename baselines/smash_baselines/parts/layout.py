@@ -68,10 +68,6 @@ class Layout:
         """Return the empty buffers of a region."""
         return [at for at in self.instance.buffers if not state.piles[at] and self.region(at) == region]
 
-    def station_of(self, state: State, carrier: str) -> str:
-        """Return the PDDL name of the station where a carrier is."""
-        return self.stations[state.stations[carrier]]
-
     def ways(self) -> Iterator[tuple[str, str, int]]:
         """Yield every ordered pair of spots with what the way between them costs."""
         samples = {self.spot(place): place for place in [*self.instance.locations, TABLE]}

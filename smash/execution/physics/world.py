@@ -249,10 +249,6 @@ class World:
         """The joint positions that the arm was last sent to [rad], shape (7,)."""
         return self._target.copy()
 
-    def finger_gap(self) -> float:
-        """Distance between the fingers' pads [m]."""
-        return float(sum(state[0] for state in self.client.getJointStates(self.robot, FINGERS)))
-
     def tool_position(self) -> NDArray[np.float64]:
         """Measured position of the tool frame [m], shape (3,)."""
         return np.array(self.client.getLinkState(self.robot, TOOL_LINK, computeForwardKinematics=True)[4])

@@ -12,14 +12,15 @@ import msgspec
 
 from smash.experiments.best_known.standing import PLANS, BestKnown, Entry, Found, open_instances, options_of
 from smash.problem.errors import MalformedFile, SmashError
+from smash.problem.files.data import data_folder, shipped
 from smash.problem.files.documents import read_bytes, write_text
 from smash.problem.files.instances import instance_document
 from smash.problem.files.plans import plan_text
 from smash.problem.model import Action, Instance
 from smash.problem.plan import Incumbent, Plan
 
-LIST = Path(__file__).parents[3] / "results" / "best-known"
-"""The list of this repository."""
+LIST = data_folder(__file__, "list", in_tree="results/best-known")
+"""The list of this repository, or the one that was installed with the package: that one is only read."""
 FILE = "best-known.csv"
 FOUND_COLUMNS = tuple(column.name for column in msgspec.structs.fields(Found))
 COLUMNS = (
@@ -39,6 +40,17 @@ class Contradiction(SmashError):
             f"{entry.instance} {entry.variant}: {entry.found.by} has a legal plan of {entry.cost} actions, "
             f"{entry.bound.by} ({entry.bound.origin}) proves at least {entry.lower_bound}: one of both is wrong"
         )
+
+
+def list_to_write(directory: Path | None) -> Path:
+    """Return the list to be changed: `directory`, or that of the repository.
+
+    Raises:
+        MalformedFile: where neither is there, but only the list that was installed.
+    """
+    if directory is None and shipped(__file__, "list") == LIST:
+        raise MalformedFile(str(LIST), "came with the package and is not changed: --list DIR names one of your own")
+    return directory or LIST
 
 
 def write_best_known(known: BestKnown) -> None:
@@ -65,7 +77,7 @@ def read_best_known(directory: Path) -> BestKnown:
     """
     path = directory / FILE
     if not path.is_file():
-        raise MalformedFile(str(directory), f"no {FILE} there; the repository's is {LIST.parent.name}/{LIST.name}")
+        raise MalformedFile(str(directory), f"no {FILE} there; without --list it is {LIST}")
     known = BestKnown(directory)
     rows = csv.DictReader(io.StringIO(read_bytes(path).decode("utf-8", errors="replace")))
     for number, row in enumerate(rows, start=2):

@@ -34,9 +34,8 @@ class FlowPlanner(BasePlanner):
     weighs: ClassVar[bool] = True
 
     def prepare(self) -> None:
-        """Load numpy, scipy's sparse matrices and HiGHS."""
+        """Load numpy and HiGHS."""
         import highspy  # noqa: F401
-        import scipy.sparse  # noqa: F401
 
         import smash.planners.flow.search  # noqa: F401
 

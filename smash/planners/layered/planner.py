@@ -47,7 +47,6 @@ class LayeredPlanner(ProblemPlanner):
     def prepare(self) -> None:
         """Load the solver and the arrays, so that no import is counted as planning."""
         import highspy  # noqa: F401
-        import scipy.sparse  # noqa: F401
 
         from smash.planners.layered import events, packing  # noqa: F401
         from smash.planners.milp.solvers import highs  # noqa: F401

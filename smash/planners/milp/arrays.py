@@ -9,13 +9,10 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_array
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -28,11 +25,48 @@ OnSolution = Callable[[float, float, Floats], None]
 
 
 @dataclass(frozen=True, slots=True)
+class SparseRows:
+    """A matrix in compressed rows, as solvers take it: columns ascend within a row, no place has two entries.
+
+    Row r has the entries `indptr[r]` to `indptr[r + 1]` of `indices` (their columns) and `data` (their values).
+    Shapes: `indptr`: (m + 1,); `indices`, `data`: (k,). Kept here because nothing else in planning needs SciPy.
+    """
+
+    indptr: NDArray[np.int32]
+    indices: NDArray[np.int32]
+    data: Floats
+
+    @classmethod
+    def of_entries(cls, rows: Ints, columns: Ints, values: Floats, shape: tuple[int, int]) -> SparseRows:
+        """Return the matrix of `shape` (m, n) with the given entries, each of shape (k,); those at one place add up."""
+        place = rows * shape[1] + columns
+        order = np.argsort(place, kind="stable")
+        place = place[order]
+        first = np.flatnonzero(np.diff(place, prepend=-1))
+        kept = order[first]
+        return cls(
+            indptr=np.concatenate([[0], np.bincount(rows[kept], minlength=shape[0]).cumsum()]).astype(np.int32),
+            indices=columns[kept].astype(np.int32),
+            data=np.add.reduceat(values[order], first) if len(first) else np.zeros(0),
+        )
+
+    @property
+    def nnz(self) -> int:
+        """Number of entries k."""
+        return len(self.data)
+
+    def __matmul__(self, vector: Floats) -> Floats:
+        """Return the product with `vector` (shape (n,)), shape (m,)."""
+        rows = np.repeat(np.arange(len(self.indptr) - 1), np.diff(self.indptr))
+        return np.bincount(rows, weights=self.data * vector[self.indices], minlength=len(self.indptr) - 1).astype(float)
+
+
+@dataclass(frozen=True, slots=True)
 class Milp:
     """Minimise `objective @ x` under `row_lower <= matrix @ x <= row_upper` and `lower <= x <= upper`.
 
     Shapes: n columns, m rows; `objective`, `lower`, `upper`: (n,) floats; `integral`: (n,) bools;
-    `matrix`: (m, n) CSR; `row_lower`, `row_upper`: (m,) floats, infinite where a side is free.
+    `matrix`: (m, n); `row_lower`, `row_upper`: (m,) floats, infinite where a side is free.
     `name` says what a column means, for files and for people.
     """
 
@@ -40,7 +74,7 @@ class Milp:
     lower: Floats
     upper: Floats
     integral: NDArray[np.bool_]
-    matrix: csr_array[Any]
+    matrix: SparseRows
     row_lower: Floats
     row_upper: Floats
     name: Callable[[int], str] = str
@@ -61,7 +95,7 @@ class Milp:
             "columns": self.columns,
             "integer_columns": int(self.integral.sum()),
             "rows": self.rows,
-            "nonzeros": int(self.matrix.nnz),
+            "nonzeros": self.matrix.nnz,
         }
 
     def violation(self, vector: Floats) -> float:
@@ -208,11 +242,9 @@ class MilpBuilder:
             OutOfTime: where the deadline has passed.
         """
         self._check_time()
-        from scipy.sparse import coo_array
-
         rows, columns, values = (_joined([entry[part] for entry in self._entries]) for part in range(3))
         shape = (self._rows, self._columns)
-        matrix = coo_array((values, (rows.astype(np.int64), columns.astype(np.int64))), shape=shape).tocsr()
+        matrix = SparseRows.of_entries(rows.astype(np.int64), columns.astype(np.int64), values, shape)
         return Milp(
             objective=_joined(self._costs),
             lower=_joined(self._lower),

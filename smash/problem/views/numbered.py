@@ -29,7 +29,6 @@ class Numbered:
     start: tuple[tuple[int, ...], ...]
     table: tuple[int, ...]
     block_number: dict[str, int]
-    location_number: dict[str, int]
 
     @classmethod
     def of(cls, instance: Instance) -> Numbered:
@@ -41,7 +40,6 @@ class Numbered:
             start=tuple(tuple(blocks[b] for b in instance.start.get(q, ())) for q in instance.locations),
             table=tuple(blocks[b] for b in instance.table),
             block_number=blocks,
-            location_number={location: number for number, location in enumerate(instance.locations)},
         )
 
     @property

@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from smash.planners.milp.arrays import MilpBuilder
+from smash.planners.milp.arrays import MilpBuilder, SparseRows
 from smash.planners.milp.solvers import gurobi, highs
 from smash.problem import MalformedFile, Unsupported
 
@@ -85,3 +85,18 @@ def test_without_gurobipy_the_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "gurobipy", None)
     with pytest.raises(Unsupported, match="extra `gurobi`"):
         gurobi.solve(cover(), time_limit=1)
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize(("rows", "columns", "entries"), [(0, 0, 0), (3, 4, 0), (5, 3, 40), (20, 30, 50)])
+def test_a_matrix_of_entries_adds_up_what_lies_at_one_place(seed, rows, columns, entries):
+    draw = np.random.default_rng(seed)
+    at, where = draw.integers(0, max(rows, 1), entries), draw.integers(0, max(columns, 1), entries)
+    values, vector = draw.choice([-1.0, 1.0, 2.0], entries), draw.integers(-5, 5, columns).astype(float)
+    dense = np.zeros((rows, columns))
+    np.add.at(dense, (at, where), values)
+    matrix = SparseRows.of_entries(at, where, values, (rows, columns))
+    assert np.array_equal(matrix @ vector, dense @ vector)
+    spans = [matrix.indices[begin:end] for begin, end in zip(matrix.indptr, matrix.indptr[1:], strict=False)]
+    assert all((np.diff(span) > 0).all() for span in spans)
+    assert matrix.nnz == len({*zip(at, where, strict=True)}) == len(matrix.indices)

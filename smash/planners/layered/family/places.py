@@ -80,10 +80,6 @@ class Places:
         """The number of the table region, the last place."""
         return self.count - 1
 
-    def deck_places(self) -> range:
-        """Return the numbers of the decks as places."""
-        return range(len(self.locations), self.table)
-
     def source(self, place: int) -> str:
         """Return what a pick or a place calls a place."""
         if place < len(self.locations):

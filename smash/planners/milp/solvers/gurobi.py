@@ -29,8 +29,9 @@ def solve(
     Raises:
         Unsupported: where gurobipy is not installed, or its licence does not take a model of this size.
     """
-    require("Gurobi", "gurobipy")
+    require("Gurobi", "gurobipy", "scipy")
     import gurobipy
+    import scipy.sparse  # noqa: F401 - gurobipy takes its matrices
 
     began = perf_counter()
     try:
@@ -52,6 +53,10 @@ def solve(
 
 
 def _add_rows(program: Any, columns: Any, model: Milp) -> None:
+    from scipy.sparse import csr_array
+
+    compressed = (model.matrix.data, model.matrix.indices, model.matrix.indptr)
+    matrix = csr_array(compressed, shape=(model.rows, model.columns))
     equal = model.row_lower == model.row_upper
     below = ~equal & np.isfinite(model.row_upper)
     above = ~equal & np.isfinite(model.row_lower)
@@ -61,7 +66,7 @@ def _add_rows(program: Any, columns: Any, model: Milp) -> None:
         (above, ">", model.row_lower),
     ):
         if chosen.any():
-            program.addMConstr(model.matrix[chosen], columns, sense, side[chosen])
+            program.addMConstr(matrix[chosen], columns, sense, side[chosen])
 
 
 def _callback(

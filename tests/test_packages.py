@@ -1,0 +1,103 @@
+"""What is installed: names, types and data are the same in the tree, in an editable install and from the wheel."""
+
+import json
+import subprocess
+import sys
+import sysconfig
+import tomllib
+from itertools import chain
+from pathlib import Path
+from zipfile import ZipFile
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+FOUND = """
+import json
+from pathlib import Path
+import smash, smash_analysis, smash_baselines
+from smash.experiments.best_known.files import LIST, list_to_write
+from smash.problem.errors import SmashError
+from smash_baselines.domains import DOMAINS
+def content(folder):
+    return {file.relative_to(folder).as_posix(): file.stat().st_size for file in folder.rglob("*") if file.is_file()}
+try:
+    list_to_write(None)
+    changes = True
+except SmashError:
+    changes = False
+print(json.dumps({
+    "packages": [str(Path(package.__file__).parent) for package in (smash, smash_analysis, smash_baselines)],
+    "domains": content(DOMAINS), "best known": content(LIST), "changes the list": changes,
+}))
+"""
+
+
+def built(kind, target):
+    """Build the wheel, or the one of an editable install, and unpack it; nothing is fetched."""
+    for builder in ("hatchling", "editables"):
+        pytest.importorskip(builder, reason=f"{builder} is not installed (the extra dev)")
+    call = f"from hatchling.build import build_{kind} as build; build({str(target)!r})"
+    subprocess.run([sys.executable, "-c", call], cwd=ROOT, check=True, capture_output=True, timeout=100)
+    (wheel,) = target.glob("*.whl")
+    with ZipFile(wheel) as content:
+        content.extractall(target / "site")
+        return target / "site", content.namelist()
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory):
+    return built("wheel", tmp_path_factory.mktemp("wheel"))
+
+
+def found_in(site, folder):
+    """Return what an interpreter finds that knows `site` and, behind it, the packages of others."""
+    others = sysconfig.get_path("purelib")  # its .pth files are not read: the tree is not on the path
+    lines = f"import site, sys; site.addsitedir({str(site)!r}); sys.path.append({others!r})\n{FOUND}"
+    ended = subprocess.run(
+        [sys.executable, "-S", "-P", "-c", lines], cwd=folder, check=True, capture_output=True, text=True, timeout=100
+    )
+    return json.loads(ended.stdout)
+
+
+def in_tree(folder):
+    top = ROOT / folder
+    return {file.relative_to(top).as_posix(): file.stat().st_size for file in top.rglob("*") if file.is_file()}
+
+
+def test_every_name_that_the_wheel_installs_begins_with_smash(wheel):
+    assert {name.split("/")[0] for name in wheel[1]} == {
+        *("smash", "smash_analysis", "smash_baselines"),
+        next(name.split("/")[0] for name in wheel[1] if ".dist-info/" in name),
+    }
+
+
+def test_every_package_says_that_it_is_typed(wheel):
+    for package in ("smash", "smash_analysis", "smash_baselines"):
+        assert f"{package}/py.typed" in wheel[1]
+
+
+def test_the_wheel_has_the_data_of_the_tree_and_reads_it(wheel, tmp_path):
+    found = found_in(wheel[0], tmp_path)
+    assert all(Path(package).parent == wheel[0] for package in found["packages"])
+    assert found["domains"] == in_tree("domains")
+    assert found["best known"] == in_tree("results/best-known")
+    assert not found["changes the list"]
+
+
+def test_an_editable_install_reads_the_tree(tmp_path):
+    found = found_in(built("editable", tmp_path)[0], tmp_path)
+    assert all(Path(package).is_relative_to(ROOT) for package in found["packages"])
+    assert found["domains"] == in_tree("domains")
+    assert found["best known"] == in_tree("results/best-known")
+    assert found["changes the list"]
+
+
+def test_every_dependency_is_pinned_once():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    lines = [line for line in (ROOT / "constraints.txt").read_text().splitlines() if not line.startswith("#")]
+    pins = [line.split("==")[0].lower().replace("_", "-") for line in lines]
+    asked = [*project["dependencies"], *chain.from_iterable(project["optional-dependencies"].values())]
+    names = {word.split(">=")[0].lower().replace("_", "-") for word in asked if not word.startswith("smash-testbed[")}
+    assert names <= set(pins)
+    assert len(pins) == len(set(pins))
