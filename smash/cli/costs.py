@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
+from smash.problem.extras import require
 from smash.problem.files.instances import instance_from_document, read_instance, write_instance
 
 
@@ -27,6 +28,7 @@ def command(results: Path, instance: Path, scene: Path | None, out: Path | None)
       smash costs runs/scoop examples/scoop-seconds.json --scene examples/scoop-scene.toml
       smash costs runs/tables my.json --out my-in-milliseconds.json
     """
+    require("smash costs", "pinocchio", "coal", "toppra", "scipy")
     from smash.execution.layout.unrolled import unrolled_positions
     from smash.execution.scene.scene_file import default_scene, read_scene
     from smash.experiments.studies.durations import Duration, durations, fit
