@@ -11,7 +11,7 @@ from smash.planners.precedence.cycles import CycleFinder
 from smash.planners.precedence.graph import build_graph
 from smash.problem import PlanOptions, StacksGoal, make_instance
 from tests.arrangements import wide
-from tests.planners.precedence.events import in_order
+from tests.planners.precedence.events import in_order, removed_before_placed
 from tests.strategies import instances, plan_options
 
 BELOW = 1.0 - 1e-3
@@ -38,7 +38,7 @@ def test_a_cycle_is_found_exactly_where_one_is_not_hit(instance, options, seed):
     assert bool(CycleFinder(graph).violated(freedom, BELOW)) == (least < BELOW)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=120, deadline=None)
 @given(st.integers(0, 9999), plan_options(), st.booleans())
 def test_the_blocks_of_a_cycle_cannot_all_move_directly_and_are_not_freed_enough(seed, options, buffered):
     draw = random.Random(seed)
@@ -50,6 +50,10 @@ def test_the_blocks_of_a_cycle_cannot_all_move_directly_and_are_not_freed_enough
         assert len(set(cycle)) == len(cycle)
         assert not in_order(graph, set(cycle))
         assert freedom[list(cycle)].sum() < BELOW
+        for block, following in zip(cycle, (*cycle[1:], cycle[0]), strict=True):
+            assert removed_before_placed(graph, block, following)
+        piles = [next(p for p, (_, begin, end) in enumerate(graph.piles) if begin <= b < end) for b in cycle]
+        assert len(set(piles)) == len(piles)
 
 
 def test_two_swapped_blocks_wait_for_each_other():
