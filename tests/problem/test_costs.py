@@ -27,7 +27,7 @@ def test_a_kind_costs_what_is_said_and_the_others_one():
 
 
 def test_a_way_costs_its_length_in_whole_numbers():
-    costs = Costs(travel=2.5, positions={"s1": (0.0, 0.0), "s2": (3.0, 4.0), "u1": (0.0, 0.5)})
+    costs = Costs(travel=2.5, positions={"s1": (0.0, 0.0), "s2": (3.0, 4.0), "u1": (0.0, 0.3)})
     assert costs.distance("s1", "s2") == costs.distance("s2", "s1") == 12  # 12.5, to the even one
-    assert costs.distance("s1", "u1") == 1
+    assert costs.distance("s1", "u1") == 1  # 0.75
     assert costs.distance("s1", "s1") == 0

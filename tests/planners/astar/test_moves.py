@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from smash.planners.astar import state as states
 from smash.planners.astar.moves import list_moves
 from smash.planners.astar.task import TOPPLED
-from smash.problem import PlanOptions, StacksGoal, State, make_instance
+from smash.problem import OnGoal, PlanOptions, StacksGoal, State, make_instance
 from tests.oracle import optimal_cost
 from tests.planners.astar.hands import Hand, walked
 from tests.strategies import instances, plan_options
@@ -78,6 +78,17 @@ def test_the_moves_left_out_are_needed_by_no_optimum(instance, options):
     best = optimal_cost(instance, options)
     assume(best is not None)
     assert cheapest_by_moves(Hand(instance, options), best) == best
+
+
+def test_where_relations_leave_few_locations_blocks_may_fall_one_by_one_or_all_at_once():
+    instance = make_instance(
+        name="x", blocks="abcd", stacks=["s1", "s2"], start={"s1": "abc", "s2": "d"}, goal=OnGoal({"a": "d"})
+    )
+    hand = Hand(instance, PlanOptions())
+    hand.take_up(State.start_of(instance))
+    states.settle(hand.task, hand.cells)
+    assert {(1, TOPPLED), (2, TOPPLED)} <= set(moves_in(hand))
+    assert cheapest_by_moves(hand, 9) == 3
 
 
 def test_a_stack_is_toppled_from_the_lowest_block_that_must_leave():

@@ -52,6 +52,16 @@ def test_where_no_cheaper_plan_is_left_the_best_one_is_the_optimum(instance, opt
     assert Law(instance, options).check(problem.actions(steps)).accepted
 
 
+@pytest.mark.parametrize("cap", [1, 2])
+def test_no_estimate_is_passed_over(cap):
+    options = PlanOptions(max_topple=cap)
+    for instance in generate("multi", 5, buffers=0, count=5):
+        best = optimal_cost(instance, options)
+        engine = opened(instance, options, best + 5, share=1000)
+        assert engine.expand() == PROVEN
+        assert engine.counter(UPPER) == best
+
+
 @settings(max_examples=30, deadline=None)
 @given(instances(min_blocks=1, max_blocks=4), plan_options())
 def test_a_plan_that_is_known_to_be_best_is_not_found_again(instance, options):

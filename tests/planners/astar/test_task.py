@@ -48,6 +48,13 @@ def test_a_topple_takes_no_more_than_the_cap_and_no_more_than_there_are():
     assert setting_of(PositionsGoal({})).task.cap == 2
 
 
+@pytest.mark.parametrize(("blocks", "tidy"), [("abc", 1), ("abcd", 0)])
+def test_relations_are_built_at_once_only_where_every_block_has_a_location(blocks, tidy):
+    """Three stacks: with fewer locations than blocks a tower begun too early may take the place of another."""
+    assert setting_of(OnGoal({"b": "a"}), start={"s1": blocks}).task.tidy == tidy
+    assert setting_of(PositionsGoal({"a": ("s1", 1)}), start={"s1": blocks}).task.tidy == 1
+
+
 @pytest.mark.parametrize(("blocks", "fits"), [(250, True), (256, False)])
 def test_what_a_byte_does_not_hold_is_left_to_others(blocks, fits):
     names = [f"b{number}" for number in range(blocks)]

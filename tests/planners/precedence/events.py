@@ -61,3 +61,18 @@ def cheapest_hitting_cost(graph):
     every = range(len(graph.choices))
     sets = (chosen for size in range(len(every) + 1) for chosen in itertools.combinations(every, size))
     return min(sum(graph.choices[c].cost for c in chosen) for chosen in sets if hits_all(graph, chosen))
+
+
+def removed_before_placed(graph, block, other):
+    """Return whether the first removal of `block` is before the final placement of `other`, whoever moves directly."""
+    after = {}
+    for earlier, later in relations(graph, ()):
+        if (earlier, later) != (("R", block), ("P", block)) or block != other:
+            after.setdefault(earlier, []).append(later)
+    reached, waiting = set(), [("R", block)]
+    while waiting:
+        for event in after.get(waiting.pop(), ()):
+            if event not in reached:
+                reached.add(event)
+                waiting.append(event)
+    return ("P", other) in reached

@@ -9,7 +9,7 @@ from smash.planners.precedence.certify import certify
 from smash.planners.precedence.graph import build_graph
 from smash.planners.precedence.hitting_set import HittingSetSolver
 from smash.problem import PlanOptions
-from smash.problem.certificate import proven_bound
+from smash.problem.certificate import Cases, proven_bound
 from smash.problem.problem import Problem
 from tests.arrangements import wide
 from tests.planners.precedence.events import cheapest_hitting_cost
@@ -38,3 +38,13 @@ def test_a_certificate_cut_short_proves_less_and_says_so():
     short = certify(Problem(instance, options), -math.inf)
     assert "time ran out" in short.note
     assert proven_bound(instance, options, short) == short.bound <= certify(Problem(instance, options), math.inf).bound
+
+
+@pytest.mark.parametrize(("blocks", "stacks", "seed"), [(30, 8, 9), (40, 6, 5)])
+def test_where_the_relaxation_leaves_a_gap_cases_close_it(blocks, stacks, seed):
+    instance, options = wide(blocks, stacks, seed), PlanOptions(max_topple=2)
+    graph = build_graph(Problem(instance, options))
+    certificate = certify(Problem(instance, options), math.inf)
+    assert isinstance(certificate.proof, Cases)
+    assert certificate.bound == graph.base_cost + HittingSetSolver(graph).solve(math.inf).bound
+    assert proven_bound(instance, options, certificate) == certificate.bound

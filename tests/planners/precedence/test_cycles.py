@@ -12,7 +12,7 @@ from smash.planners.precedence.graph import build_graph
 from smash.problem import PlanOptions, StacksGoal, make_instance
 from smash.problem.problem import Problem
 from tests.arrangements import wide
-from tests.planners.precedence.events import in_order
+from tests.planners.precedence.events import in_order, removed_before_placed
 from tests.strategies import instances, plan_options
 
 BELOW = 1.0 - 1e-3
@@ -39,7 +39,7 @@ def test_a_cycle_is_found_exactly_where_one_is_not_hit(instance, options, seed):
     assert bool(CycleFinder(graph).violated(freedom, BELOW)) == (least < BELOW)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=120, deadline=None)
 @given(st.integers(0, 9999), plan_options(), st.booleans())
 def test_the_blocks_of_a_cycle_cannot_all_move_directly_and_are_not_freed_enough(seed, options, buffered):
     draw = random.Random(seed)
@@ -51,6 +51,10 @@ def test_the_blocks_of_a_cycle_cannot_all_move_directly_and_are_not_freed_enough
         assert len(set(cycle)) == len(cycle)
         assert not in_order(graph, set(cycle))
         assert freedom[list(cycle)].sum() < BELOW
+        for block, following in zip(cycle, (*cycle[1:], cycle[0]), strict=True):
+            assert removed_before_placed(graph, block, following)
+        piles = [next(p for p, (_, begin, end) in enumerate(graph.piles) if begin <= b < end) for b in cycle]
+        assert piles.count(piles[-1]) == 1  # it was followed from a block of this pile, until it came back there
 
 
 def test_two_swapped_blocks_wait_for_each_other():

@@ -53,6 +53,11 @@ def test_a_grounded_tower_goes_where_the_bottom_is_free():
     assert target[2] == (2,)
 
 
+def test_a_grounded_tower_takes_no_place_of_another():
+    target = target_piles(problem(OnGoal({}, ("c", "d")), {"s1": "ac", "s2": "bd"}))
+    assert sorted(pile[0] for pile in target if pile)[-2:] == [2, 3]
+
+
 def test_more_bottoms_than_locations_have_no_target():
     assert target_piles(problem(OnGoal({}, ("a", "b", "c", "d")))) is None
 
