@@ -8,7 +8,8 @@ import click
 
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.episodes.asked import note_asked
-from smash.experiments.episodes.series import POLICIES, REPLAYS, EpisodeRun, episode_runs, run_all
+from smash.experiments.episodes.question import EpisodeRun
+from smash.experiments.episodes.series import POLICIES, REPLAYS, episode_runs, run_all
 from smash.experiments.sweeps.display import span
 from smash.problem.errors import Interrupted
 from smash.problem.extras import EXECUTION, require

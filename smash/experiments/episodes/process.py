@@ -11,8 +11,9 @@ from smash.execution.executor import Executor
 from smash.execution.policy import OPEN
 from smash.execution.scene.scene_file import default_scene, read_scene
 from smash.execution.viewing.capture import Capture
+from smash.experiments.episodes.question import EpisodeRun
 from smash.experiments.episodes.replanning import replanner
-from smash.experiments.episodes.series import REPLAN_BUDGET, EpisodeRun
+from smash.experiments.episodes.series import REPLAN_BUDGET
 from smash.experiments.isolation.lifetime import end_with_parent
 from smash.problem.files.instances import instance_from_document
 from smash.records.episodes import Episode, episode_text

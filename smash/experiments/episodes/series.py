@@ -18,6 +18,7 @@ from time import perf_counter
 import msgspec
 
 from smash.experiments.environment import commit, load, machine, versions
+from smash.experiments.episodes.question import EpisodeRun
 from smash.experiments.episodes.worker import Crew, EpisodeLost
 from smash.problem.errors import SmashError
 from smash.problem.files.instances import instance_from_document
@@ -25,7 +26,6 @@ from smash.problem.model import Instance, PositionsGoal
 from smash.records.episodes import EPISODE_RUN_FORMAT, Episode, EpisodeRecord
 from smash.records.files import RUNS
 from smash.records.reading import read
-from smash.records.runs import RunRecord
 from smash.records.writing import Writer
 
 REPLAYS = "replays"
@@ -33,31 +33,6 @@ POLICIES = ("replan", "open")
 """`replan`: the executor repairs, retries and replans; `open`: the paper's open pipeline."""
 REPLAN_BUDGET = 10.0
 """Seconds of each replanning."""
-
-
-class EpisodeRun(msgspec.Struct, frozen=True):
-    """One episode to be run.
-
-    Attributes:
-        record: The run that holds its plan.
-        seed: Of the episode.
-        policy: Of `POLICIES`.
-        scene: The scene file, or None for the built-in scene.
-        told: What `told_apart` says of the scene, or None for the built-in scene.
-        replay: The page to write, or None.
-    """
-
-    record: RunRecord
-    seed: int
-    policy: str
-    scene: str | None
-    told: str | None = None
-    replay: str | None = None
-
-    @property
-    def key(self) -> str:
-        """Names the episode for good."""
-        return f"{self.record.key}/{self.policy}/{self.seed}" + (f"/{self.told}" if self.told else "")
 
 
 def told_apart(scene: str | os.PathLike[str]) -> str:

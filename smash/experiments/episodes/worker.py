@@ -10,15 +10,12 @@ from contextlib import suppress
 from queue import SimpleQueue
 from tempfile import TemporaryFile
 from threading import Timer
-from typing import TYPE_CHECKING
 
 import msgspec
 
+from smash.experiments.episodes.question import EpisodeRun
 from smash.records.episodes import Episode
 from smash.records.record import decoded
-
-if TYPE_CHECKING:
-    from smash.experiments.episodes.series import EpisodeRun
 
 LONGEST_EPISODE = 900.0
 """Seconds of wall time after which an episode is given up."""

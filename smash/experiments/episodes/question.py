@@ -1,0 +1,32 @@
+"""What is asked of a process that runs episodes: one plan, how it is to be carried out."""
+
+from __future__ import annotations
+
+import msgspec
+
+from smash.records.runs import RunRecord
+
+
+class EpisodeRun(msgspec.Struct, frozen=True):
+    """One episode to be run.
+
+    Attributes:
+        record: The run that holds its plan.
+        seed: Of the episode.
+        policy: Of `smash.experiments.episodes.series.POLICIES`.
+        scene: The scene file, or None for the built-in scene.
+        told: What `told_apart` says of the scene, or None for the built-in scene.
+        replay: The page to write, or None.
+    """
+
+    record: RunRecord
+    seed: int
+    policy: str
+    scene: str | None
+    told: str | None = None
+    replay: str | None = None
+
+    @property
+    def key(self) -> str:
+        """Names the episode for good."""
+        return f"{self.record.key}/{self.policy}/{self.seed}" + (f"/{self.told}" if self.told else "")
