@@ -92,7 +92,7 @@ def command(
     require_writable(out)
     with stopped_by_signals() as stop, _progress(planner) as tell:
         report = run_isolated(job, tell, stop)
-    _write(report, job, out)
+    _write(report, out)
     _end(report, instance, planner, budget)
 
 
@@ -106,12 +106,12 @@ def _trusted(estimates: Path, max_topple: int | None) -> int:
     return trusted if max_topple is None else min(trusted, max_topple)
 
 
-def _write(report: Report, job: Job, out: Path | None) -> None:
+def _write(report: Report, out: Path | None) -> None:
     """File the plan: at exits 0, 3 and 4, and a plan or a bound that was found before an interruption."""
-    found = report.actions is not None or report.lower_bound is not None
+    found = report.plan.actions is not None or report.plan.lower_bound is not None
     if report.exit_code not in (0, 3, 4) and not (report.exit_code == 130 and found):
         return
-    text = plan_text(report.plan(job))
+    text = plan_text(report.plan)
     if out is None:
         click.echo(text, nl=False)
     else:
@@ -132,10 +132,10 @@ def _end(report: Report, instance: Path, planner: str, budget: float) -> None:
         raise error
     who = f"{instance}: planner {planner!r}"
     found = ""
-    if report.actions is not None:
-        found = f"; the best plan so far has cost {report.incumbents[-1].cost}"
-    elif report.lower_bound is not None:
-        found = f" without a plan; none is cheaper than {report.lower_bound}"
+    if report.plan.actions is not None:
+        found = f"; the best plan so far has cost {report.plan.cost}"
+    elif report.plan.lower_bound is not None:
+        found = f" without a plan; none is cheaper than {report.plan.lower_bound}"
     words = {
         "infeasible": "proven infeasible",
         "budget-spent": _without_plan(report, budget),

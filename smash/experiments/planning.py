@@ -68,7 +68,7 @@ def plan(
     error = failure(report, planner)
     if error is not None:
         raise error
-    return report.plan(job)
+    return report.plan
 
 
 def failure(report: Report, planner: str, where: str = "") -> SmashError | None:

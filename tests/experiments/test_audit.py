@@ -13,9 +13,9 @@ from smash.experiments.isolation.job import Report
 from smash.experiments.sweeps.audit import audit
 from smash.experiments.sweeps.experiment import experiment_runs, read_experiment
 from smash.experiments.sweeps.sweep import record_of
+from smash.planners.protocol import Settings, ask
 from smash.planners.registry import get_planner
 from smash.problem.plan import Incumbent
-from smash.problem.rules import Law
 from smash.records.runs import RunRecord
 
 EXPERIMENT = 'name = "few"\nsuites = ["multi-4"]\ninstances = 2\nbudgets = [1]\n[[planners]]\nname = "greedy"\n'
@@ -23,11 +23,10 @@ EXPERIMENT = 'name = "few"\nsuites = ["multi-4"]\ninstances = 2\nbudgets = [1]\n
 
 def finished(run):
     """The record of a run as a sweep makes it, planned in this process."""
-    result = get_planner("greedy").solve(run.job.instance, run.job.options, 1.0)
-    verdict = Law(run.job.instance, run.job.options).check(result.actions)
-    incumbents = (Incumbent(0.01, len(result.actions), "greedy"),)
-    report = Report("feasible", "feasible", actions=tuple(result.actions), incumbents=incumbents, verdict=verdict)
-    report = replace(report, wall_seconds=0.1, cpu_seconds=0.1, memory_mib=50.0)
+    plan = ask(get_planner("greedy"), run.job.problem, Settings(), 1.0, name="greedy")
+    plan = replace(plan, incumbents=(Incumbent(0.01, plan.cost, "greedy"),))
+    verdict = run.job.problem.law.check(plan.actions)
+    report = Report("feasible", plan, verdict=verdict, wall_seconds=0.1, cpu_seconds=0.1, memory_mib=50.0)
     record = record_of(run, report, datetime.now(UTC), 0.0)
     return record.document | {"commit": {"hash": "c" * 40, "dirty": False}}
 

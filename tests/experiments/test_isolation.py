@@ -72,9 +72,14 @@ def test_incumbents_arrive_as_they_are_found_and_times_to_come_are_replaced(run)
     assert [cost for _, cost in heard] == [9, 5, 3]
     assert heard[0][0] == 0.0
     assert 0.0 < heard[1][0] < heard[2][0] <= time.monotonic() - began
-    assert (report.outcome, report.status, len(report.actions), report.lower_bound) == ("optimal", "optimal", 3, 3)
-    assert report.incumbents[-1].origin == "engine"
-    assert report.details == {"nodes": 7}
+    assert (report.outcome, report.plan.status, len(report.plan.actions), report.plan.lower_bound) == (
+        "optimal",
+        "optimal",
+        3,
+        3,
+    )
+    assert report.plan.incumbents[-1].origin == "engine"
+    assert report.plan.details == {"nodes": 7}
     assert report.verdict.accepted
     assert report.memory_mib > 1
 
@@ -82,7 +87,7 @@ def test_incumbents_arrive_as_they_are_found_and_times_to_come_are_replaced(run)
 def test_a_plan_that_was_never_streamed_counts_from_the_end_of_the_call(run):
     report = run("bare")
     assert report.outcome == "feasible"
-    assert [entry.cost for entry in report.incumbents] == [3]
+    assert [entry.cost for entry in report.plan.incumbents] == [3]
 
 
 @pytest.mark.parametrize(
@@ -109,12 +114,12 @@ def test_every_end_has_a_name_and_a_reason(run, planner, outcome, words):
 
 def test_a_crash_keeps_what_was_found_and_what_was_printed(run):
     report = run("segfaults")
-    assert [entry.cost for entry in report.incumbents] == [5]
+    assert [entry.cost for entry in report.plan.incumbents] == [5]
     assert "Segmentation fault" in report.log
 
 
 def test_infeasible_is_passed_on(run):
-    assert run("gives-up", topple=False).status == "infeasible"
+    assert run("gives-up", topple=False).plan.status == "infeasible"
 
 
 def test_a_planner_that_prints_disturbs_nothing(run):
@@ -125,7 +130,7 @@ def test_a_planner_that_prints_disturbs_nothing(run):
 
 def test_a_hang_is_stopped_and_keeps_its_plan(run, alive):
     report = run("hangs-with-plan", budget=1.0)
-    assert (report.outcome, report.status, report.exit_code) == ("over-budget", "feasible", 0)
+    assert (report.outcome, report.plan.status, report.exit_code) == ("over-budget", "feasible", 0)
     assert not alive()
 
 
@@ -137,8 +142,7 @@ def test_a_hang_is_stopped_when_its_grace_is_over(run):
 @pytest.mark.parametrize(("topple", "status", "cost"), [(True, "feasible", 5), (False, "unknown", None)])
 def test_a_hang_keeps_the_best_bound_that_it_had_proven(run, tower_file, topple, status, cost):
     report = run("hangs-with-bounds", budget=1.0, topple=topple)
-    job = Job("hangs-with-bounds", problem(tower_file, topple), Settings(), 1.0)
-    filed = plan_from_document(json.loads(plan_text(report.plan(job))))
+    filed = plan_from_document(json.loads(plan_text(report.plan)))
     assert report.outcome == "over-budget"
     assert (filed.status, filed.cost) == (status, cost)
     assert (filed.lower_bound, filed.bound_origin) == (3, "proof of 3")
@@ -146,27 +150,32 @@ def test_a_hang_keeps_the_best_bound_that_it_had_proven(run, tower_file, topple,
 
 def test_a_hang_whose_plan_meets_its_bound_is_proven_all_the_same(run):
     report = run("hangs-proven", budget=1.0)
-    assert (report.outcome, report.status, report.lower_bound, report.exit_code) == ("over-budget", "optimal", 5, 0)
+    assert (report.outcome, report.plan.status, report.plan.lower_bound, report.exit_code) == (
+        "over-budget",
+        "optimal",
+        5,
+        0,
+    )
 
 
 def test_a_streamed_bound_above_a_legal_plan_is_refused(run):
     report = run("hangs-after-boasting", budget=1.0)
     assert report.outcome == "refused"
     assert "lower bound 6" in report.reason
-    assert report.lower_bound is None
+    assert report.plan.lower_bound is None
 
 
 def test_an_interrupted_run_keeps_its_bound(run, alive):
     stop = Event()
     report = run("hangs-with-bounds", budget=60, stop=stop, on_incumbent=lambda *_: stop.set())
-    assert (report.outcome, report.status, report.exit_code) == ("interrupted", "feasible", 130)
-    assert (report.lower_bound, report.bound_origin) == (3, "proof of 3")
+    assert (report.outcome, report.plan.status, report.exit_code) == ("interrupted", "feasible", 130)
+    assert (report.plan.lower_bound, report.plan.bound_origin) == (3, "proof of 3")
     assert not alive()
 
 
 def test_a_busy_hang_without_a_plan_is_budget_spent(run):
     report = run("hangs", budget=0.2)
-    assert (report.outcome, report.status, report.exit_code) == ("over-budget", "unknown", 4)
+    assert (report.outcome, report.plan.status, report.exit_code) == ("over-budget", "unknown", 4)
 
 
 @pytest.mark.parametrize("planner", ["eats-memory", "eats-memory-in-a-child"])
@@ -185,7 +194,7 @@ def test_children_in_sessions_of_their_own_end_with_the_run(run, alive):
 def test_stopping_a_run_keeps_its_plan_and_leaves_no_process(run, alive):
     stop = Event()
     report = run("leaves-children", budget=60, stop=stop, on_incumbent=lambda *_: stop.set())
-    assert (report.outcome, report.status, len(report.actions)) == ("interrupted", "feasible", 5)
+    assert (report.outcome, report.plan.status, len(report.plan.actions)) == ("interrupted", "feasible", 5)
     assert not alive()
 
 

@@ -28,8 +28,8 @@ def replanner(planner: str, budget: float, seed: int = 0) -> Callable[[Instance,
     def plan(instance: Instance, options: PlanOptions) -> Sequence[Action] | None:
         for name in names:
             report = run_isolated(Job(name, Problem(instance, options), Settings(seed=seed), budget))
-            if report.actions is not None:
-                return report.actions
+            if report.plan.actions is not None:
+                return report.plan.actions
         return None
 
     return plan

@@ -24,7 +24,7 @@ from smash.planners.protocol import OnIncumbent
 from smash.problem.errors import SmashError
 from smash.problem.files.plans import action_from_list
 from smash.problem.model import Action
-from smash.problem.plan import Incumbent, Status
+from smash.problem.plan import Incumbent, Plan, Status
 from smash.problem.rules import Verdict
 from smash.records.outcomes import OutcomeName
 
@@ -166,16 +166,23 @@ class _Heard:
         verdict = self._refusal
         if verdict is None and self._best is not None:
             verdict = Verdict(True)
-        return Report(
-            outcome=outcome,
+        plan = Plan(
+            instance=self._job.instance.name,
+            planner=self._job.planner,
+            options=self._job.options,
             status=status,
-            reason=reason,
             actions=self._best,
             lower_bound=proof.get("lower_bound"),
             bound_origin=proof.get("bound_origin"),
             incumbents=tuple(self._trace),
-            verdict=verdict,
+            stated_cost=self._cost,
             details=answer.get("details", {}),
+        )
+        return Report(
+            outcome=outcome,
+            plan=plan,
+            reason=reason,
+            verdict=verdict,
             wall_seconds=ended.get("wall_seconds"),
             cpu_seconds=ended.get("cpu_seconds"),
             memory_mib=ended.get("memory_mib"),

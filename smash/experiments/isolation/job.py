@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from smash.planners.protocol import Settings
 from smash.problem.files.instances import instance_document, instance_from_document
-from smash.problem.model import Action, Instance, PlanOptions
-from smash.problem.plan import Incumbent, Plan, Status
+from smash.problem.model import Instance, PlanOptions
+from smash.problem.plan import Plan
 from smash.problem.problem import Problem
 from smash.problem.rules import Verdict
 from smash.records.outcomes import OUTCOMES, OutcomeName
@@ -71,21 +71,23 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """How a run ended and what it left: the best legal plan, every incumbent, and what it used.
+    """How a run ended and what it left.
 
-    `verdict` is the law's on the plan that the planner answered with, None where it answered with none.
-    `memory_mib` is the peak over the process tree; `log` the last lines that the planner's processes printed.
+    Attributes:
+        outcome: its end, by name.
+        plan: the best legal plan and the best bound, with every incumbent.
+        reason: why it ended so, in one line; empty where there is nothing to explain.
+        verdict: the law's on the plan that the planner answered with, None where it answered with none.
+        wall_seconds: from the start of its clock to its end.
+        cpu_seconds: of the planner's process.
+        memory_mib: peak over the process tree.
+        log: the last lines that the planner's processes printed.
     """
 
     outcome: OutcomeName
-    status: Status
+    plan: Plan
     reason: str = ""
-    actions: tuple[Action, ...] | None = None
-    lower_bound: int | None = None
-    bound_origin: str | None = None
-    incumbents: tuple[Incumbent, ...] = ()
     verdict: Verdict | None = None
-    details: dict[str, Any] = field(default_factory=dict)
     wall_seconds: float | None = None
     cpu_seconds: float | None = None
     memory_mib: float | None = None
@@ -94,20 +96,6 @@ class Report:
     @property
     def exit_code(self) -> int:
         """The exit code of `smash plan` for this end."""
-        if self.outcome == "over-budget" and self.actions is not None:
+        if self.outcome == "over-budget" and self.plan.actions is not None:
             return 0
         return OUTCOMES[self.outcome].exit_code
-
-    def plan(self, job: Job) -> Plan:
-        """Return the plan as it is filed."""
-        return Plan(
-            instance=job.instance.name,
-            planner=job.planner,
-            options=job.options,
-            status=self.status,
-            actions=self.actions,
-            lower_bound=self.lower_bound,
-            bound_origin=self.bound_origin,
-            incumbents=self.incumbents,
-            stated_cost=None if self.actions is None else job.problem.law.price(self.actions),
-        )
