@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal
+from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal, no_goal
 from smash_baselines.encodings import Encoding, cap_of
 from smash_baselines.names import Fact, Names, count_names
 from smash_baselines.parts.layout import Layout
@@ -71,6 +71,8 @@ def named_blocks(instance: Instance) -> frozenset[str]:
             return frozenset(positions)
         case OnGoal(on, bottom):
             return frozenset((*on, *on.values(), *bottom))
+        case _:
+            no_goal(instance.goal)
 
 
 def facts_of(
@@ -153,6 +155,8 @@ def _goal(instance: Instance, names: Names) -> Iterator[Fact]:
         case OnGoal(on, bottom):
             yield from (("on", names.blocks[upper], names.blocks[under]) for upper, under in on.items())
             yield from (("bottom", names.blocks[block]) for block in bottom)
+        case _:
+            no_goal(instance.goal)
 
 
 def _goal_piles(piles: Mapping[str, tuple[str, ...]], names: Names) -> Iterator[Fact]:

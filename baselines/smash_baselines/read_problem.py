@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
 from smash.problem.errors import MalformedFile
-from smash.problem.files.instances import make_instance
+from smash.problem.making import make_instance
 from smash.problem.model import Goal, Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal
 from smash_baselines.encodings import BY_DOMAIN, Encoding
 from smash_baselines.facts import facts_of

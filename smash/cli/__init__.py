@@ -12,6 +12,7 @@ from typing import NoReturn
 import click
 
 from smash.problem.errors import SmashError
+from smash.problem.extras import missing_extra
 
 COMMANDS: dict[str, tuple[str, str]] = {
     "generate": ("smash.cli.generate", "make random benchmark instances (single-goal, multi-goal)"),
@@ -97,9 +98,12 @@ def _prepare_streams() -> None:
 
 
 def _fail_unforeseen(error: Exception) -> NoReturn:
-    """End with one line on what no command foresaw: a file that the system refuses, or a defect."""
+    """End with one line on what no command foresaw: a file that the system refuses, a missing extra, or a defect."""
     if isinstance(error, OSError):
         fail(f"{error.filename}: {error.strerror}" if error.filename is not None else str(error), 2)
+    missing = missing_extra(error, "this command")
+    if missing is not None:
+        fail(str(missing), missing.exit_code)
     last = traceback.extract_tb(error.__traceback__)[-1]
     fail(f"defect: {type(error).__name__}: {error} ({os.path.basename(last.filename)}:{last.lineno})", 7)
 

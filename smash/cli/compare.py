@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from smash.cli.sweep import installed_runs, run_all
+from smash.experiments.comparison import comparison_of
 from smash.experiments.isolation.job import DEFAULT_MEMORY
-from smash.experiments.sweeps.experiment import Experiment, PlannerEntry, check_experiment
 from smash.experiments.sweeps.keep import keep
-from smash.problem.errors import Unsupported
+from smash.problem.extras import TABLES, require
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -55,24 +55,21 @@ def command(
     Example:
       smash compare multi-4 multi-9 --planner smash --planner smash-layered --planner fd-lama --jobs 2
     """
-    try:
-        from smash_analysis import comparison
-    except ImportError as error:
-        raise Unsupported(f"analysis is not installed ({error}): pip install 'smash-testbed[analysis]'") from None
+    require("smash compare", *TABLES)
+    from smash_analysis import comparison
+
     name = "compare-" + "-".join(Path(suite).name or "here" for suite in suites)
-    experiment = Experiment(
-        name="compare",
-        suites=list(suites),
-        planners=[PlannerEntry(planner) for planner in planners],
-        budgets=[budget],
-        buffers=list(buffers) or None,
+    experiment = comparison_of(
+        suites,
+        planners,
+        budget=budget,
+        variants=variants or ("topple", "no-topple"),
+        buffers=buffers,
         instances=instances,
-        variants=list(variants) or ["topple", "no-topple"],
-        seeds=[seed],
+        seed=seed,
         memory=memory,
         jobs=jobs,
     )
-    check_experiment(experiment, "smash compare")
     out = out or Path("runs") / name
     runs = installed_runs(experiment, Path())
     run_all(runs, out, jobs, dask, partial(keep, experiment, Path(), out))

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import click
 
 from smash.cli.choices import without_option
+from smash.problem.errors import SmashError
+from smash.problem.extras import require
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import read_plan
-from smash.problem.model import Action, Instance, PlanOptions
-from smash.problem.rules import Law
+from smash.problem.model import PlanOptions
 
 OUT = click.option(
     "--out",
@@ -56,9 +55,12 @@ def draw_gadget_command(
     out: Path,
 ) -> None:
     """Draw the gadget of INSTANCE, or of the given size (.png, .pdf, .svg)."""
-    from smash.gadget.drawing.figure import draw_gadget
+    require("smash draw", "matplotlib")
+    from smash.gadget.drawing.figure import gadget_figure
+    from smash.gadget.drawing.style import check_suffix, save
     from smash.gadget.library import gadget_of, pick_and_place_gadget, smash_gadget
 
+    check_suffix(out)
     options = PlanOptions(not no_topple, max_topple, without=without)
     problem = read_instance(instance) if instance is not None else None
     if problem is not None and not literal:
@@ -72,7 +74,7 @@ def draw_gadget_command(
             gadget = pick_and_place_gadget(locations, height, literal=literal)
         else:
             gadget = smash_gadget(locations, height, stacks=stack_names, max_topple=max_topple, literal=literal)
-    draw_gadget(gadget, out)
+    save(gadget_figure(gadget), out)
     click.echo(f"{out}: {len(gadget.nodes)} nodes, {len(gadget.edges)} edges")
 
 
@@ -81,9 +83,9 @@ def draw_gadget_command(
 @OUT
 def draw_instance_command(instance: Path, out: Path) -> None:
     """Draw the start and the goal of INSTANCE (.png, .pdf, .svg)."""
-    from smash.gadget.drawing.piles import draw_instance
+    from smash.gadget.drawing.draw import draw
 
-    draw_instance(read_instance(instance), out)
+    draw(instance, path=out)
     click.echo(str(out))
 
 
@@ -93,22 +95,11 @@ def draw_instance_command(instance: Path, out: Path) -> None:
 @OUT
 def draw_plan_command(instance: Path, plan: Path, out: Path) -> None:
     """Draw PLAN as pebbles that move on the gadget of INSTANCE: .gif moves, .png, .pdf and .svg show frames."""
-    from smash.gadget.drawing.pebbles import draw_motion
-    from smash.gadget.encode import encode
-    from smash.gadget.library import gadget_of
+    from smash.gadget.drawing.draw import motion_of, write_motion
 
     problem, filed = read_instance(instance), read_plan(plan)
     if filed.actions is None:
-        raise click.ClickException(f"{plan}: the file holds no plan (status {filed.status})")
-    problem = _without_idle_buffers(problem, filed.actions)
-    motion = encode(problem, filed.actions, gadget_of(problem, filed.options))
-    draw_motion(motion, problem, out)
+        raise SmashError(f"{plan}: the file holds no plan (status {filed.status})")
+    shown, motion = motion_of(problem, filed)
+    write_motion(motion, shown, out)
     click.echo(f"{out}: {motion.steps} steps, cost {motion.cost}")
-
-
-def _without_idle_buffers(problem: Instance, actions: Sequence[Action]) -> Instance:
-    """Return the problem without the buffers that hold nothing at any time, so that a picture shows what matters."""
-    used = {location for state in Law(problem).states(actions) for location, pile in state.piles.items() if pile}
-    kept = tuple(buffer for buffer in problem.buffers if buffer in used)
-    start = {location: pile for location, pile in problem.start.items() if location in (*problem.stacks, *kept)}
-    return replace(problem, buffers=kept, start=start)

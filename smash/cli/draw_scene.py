@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
+from smash.problem.extras import require
 from smash.problem.files.documents import require_writable
 
 
@@ -24,6 +25,7 @@ def command(scene: Path | None, out: Path | None, height: int, buffer_height: in
     Example:
       smash draw-scene my-scene.toml --out scene.png
     """
+    require("smash draw-scene", "pinocchio")
     from smash.execution.layout.conditions import violations
     from smash.execution.layout.drawing import draw
     from smash.execution.scene.scene_file import default_scene, read_scene
@@ -33,6 +35,7 @@ def command(scene: Path | None, out: Path | None, height: int, buffer_height: in
     if out is not None:
         if out.suffix not in (".png", ".pdf", ".svg"):
             raise click.BadParameter("a picture's name ends in .png, .pdf or .svg", param_hint="--out")
+        require("smash draw-scene --out", "matplotlib")
         draw(tabletop, out)
     found = violations(tabletop, height, buffer_height)
     for problem in found:

@@ -21,6 +21,7 @@ from smash.experiments.episodes.episodes import (
 from smash.experiments.sweeps.display import span
 from smash.experiments.sweeps.records import Records
 from smash.problem.errors import Interrupted
+from smash.problem.extras import EXECUTION, require
 
 SECONDS_AN_EPISODE = 5.0
 """Wall time of a typical episode on one core, for the estimate [s]."""
@@ -62,6 +63,7 @@ def command(
       smash sweep experiments/tables-subset.toml --out runs/tables && smash episodes runs/tables --jobs 2
       smash episodes runs/tables --label smash --policy replan --policy open --seeds 3
     """
+    require("smash episodes", *EXECUTION)
     if scene is not None:
         from smash.execution.scene.scene_file import read_scene
 

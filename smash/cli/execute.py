@@ -9,10 +9,11 @@ import click
 from smash.cli import fail
 from smash.cli.choices import SECONDS
 from smash.cli.signals import ended_by_signals
+from smash.experiments.executing import REPLAN_BUDGET, executor_of
+from smash.problem.extras import EXECUTION, require
 from smash.problem.files.documents import require_writable, write_text
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import read_plan
-from smash.problem.plan import check_plan
 
 
 @click.command("execute")
@@ -27,7 +28,7 @@ from smash.problem.plan import check_plan
 @click.option(
     "--budget",
     type=SECONDS,
-    default=10.0,
+    default=REPLAN_BUDGET,
     show_default=True,
     metavar="SECONDS",
     help="Of each replanning.",
@@ -60,22 +61,17 @@ def command(
       smash execute examples/figure1.json plan.json --replay episode.html
       smash execute examples/figure1.json plan.json --seed 3 --no-replan
     """
+    require("smash execute", *EXECUTION)
+    if video is not None:
+        require("smash execute --video", "imageio")
+    if stills is not None:
+        require("smash execute --stills", "matplotlib")
     require_writable(replay, video, stills, trajectory, out)
     if replanner is not None:
         _require_planner(replanner, no_replan)
     problem, filed = read_instance(instance), read_plan(plan)
-    verdict = check_plan(problem, filed)
-    if not verdict.accepted:
-        fail(f"{plan}: {verdict}", 3)
-    from smash.execution.scene.scene_file import default_scene, read_scene
-
-    tabletop = default_scene() if scene is None else read_scene(scene)
-    tabletop.bind(problem)
     from smash.execution.episode import Performed, episode_text
-    from smash.execution.executor import Executor
-    from smash.execution.policy import OPEN
     from smash.execution.viewing.capture import Capture
-    from smash.experiments.episodes.replanning import replanner as make_replanner
 
     capture = Capture(replay=replay, video=video, stills=stills, trajectory=trajectory)
     from rich.console import Console
@@ -89,13 +85,14 @@ def command(
             f"step {row.step} of {planned if row.origin == 'plan' else '?'}: {' '.join(map(str, row.action))}"
         )
 
-    executor = Executor(
+    executor = executor_of(
         problem,
         filed,
-        tabletop,
         seed=seed,
-        policy=OPEN if no_replan else None,
-        replanner=None if no_replan else make_replanner(replanner or filed.planner, budget, seed),
+        replan=not no_replan,
+        scene=scene,
+        replanner=replanner,
+        budget=budget,
         gui=gui,
         on_frame=capture.frame,
         on_step=shown,

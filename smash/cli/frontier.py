@@ -14,6 +14,7 @@ from smash.cli.choices import SECONDS
 from smash.experiments.studies.frontier import FrontierPoint, fewest_buffers, frontier
 from smash.planners.registry import DEFAULT, get_planner
 from smash.problem.errors import MalformedFile
+from smash.problem.extras import require
 from smash.problem.files.instances import read_instance
 from smash.problem.sets.suites import read_suite
 
@@ -49,6 +50,8 @@ def command(
     """
     from rich.console import Console
 
+    if out is not None:
+        require("smash frontier --out", "matplotlib")
     solver = get_planner(planner)
     chosen = [read_instance(problem)] if Path(problem).is_file() else read_suite(problem)[:instances]
     console = Console(stderr=True)

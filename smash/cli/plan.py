@@ -15,6 +15,7 @@ from smash.cli.choices import SECONDS, without_option
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import DEFAULT_MEMORY, Job, Report
+from smash.experiments.planning import failure
 from smash.planners.protocol import MOST_THREADS, OnIncumbent, SolveOptions
 from smash.planners.registry import DEFAULT
 from smash.problem.files.documents import require_writable, write_text
@@ -91,7 +92,7 @@ def command(
     with stopped_by_signals() as stop, _progress(planner) as tell:
         report = run_isolated(job, tell, stop)
     _write(report, job, out)
-    _end(report, f"{instance}: planner {planner!r}", budget)
+    _end(report, instance, planner, budget)
 
 
 def _trusted(estimates: Path, max_topple: int | None) -> int:
@@ -124,7 +125,11 @@ def _without_plan(report: Report, budget: float) -> str:
     return "budget spent without a plan"
 
 
-def _end(report: Report, who: str, budget: float) -> None:
+def _end(report: Report, instance: Path, planner: str, budget: float) -> None:
+    error = failure(report, planner, f"{instance}: ")
+    if error is not None:
+        raise error
+    who = f"{instance}: planner {planner!r}"
     found = ""
     if report.actions is not None:
         found = f"; the best plan so far has cost {report.incumbents[-1].cost}"

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from smash.problem.errors import MalformedFile, SmashError, Unsupported
+from smash.problem.errors import MalformedFile, SmashError
+from smash.problem.extras import TABLES, require
 
 if TYPE_CHECKING:
     from smash.experiments.sweeps.audit import Check
@@ -110,12 +111,10 @@ def export(results: Path, out: Path) -> None:
     Example:
       smash records export runs/ablation --out runs/ablation/tables
     """
-    try:
-        import pyarrow  # noqa: F401
-        from smash_analysis import export as tables
-        from smash_analysis.records import NoRecords
-    except ImportError as error:
-        raise Unsupported(f"analysis is not installed ({error}): pip install 'smash-testbed[analysis]'") from None
+    require("smash records export", *TABLES, "pyarrow")
+    from smash_analysis import export as tables
+    from smash_analysis.records import NoRecords
+
     try:
         files = tables.export(results, out)
     except NoRecords as error:

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from smash.problem.errors import SmashError
+from smash.problem.extras import TABLES, require
 
 
 @click.command("report")
@@ -23,13 +24,10 @@ def command(results: Path, out: Path | None) -> None:
       smash report runs/ablation
       smash report results --out report
     """
-    try:
-        import jinja2  # noqa: F401
-        import matplotlib  # noqa: F401
-        from smash_analysis.records import NoRecords
-        from smash_analysis.report import page
-    except ImportError as error:
-        raise SmashError(f"analysis is not installed ({error}): pip install 'smash-testbed[analysis]'") from None
+    require("smash report", *TABLES)
+    from smash_analysis.records import NoRecords
+    from smash_analysis.report import page
+
     try:
         made = page.make(results, out or results / "report", lambda line: click.echo(line, err=True))
     except NoRecords as error:

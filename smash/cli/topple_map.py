@@ -9,8 +9,10 @@ import click
 
 from smash.cli.signals import stopped_by_signals
 from smash.problem.errors import Interrupted
+from smash.problem.extras import EXECUTION, require
 
 if TYPE_CHECKING:
+    require("smash topple-map", *EXECUTION, "matplotlib")
     from smash.execution.trials.topple_map import Trial
 
 

@@ -7,9 +7,9 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
+from smash.problem.files.given import check
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import read_plan
-from smash.problem.plan import check_plan
 
 
 @click.command("validate")
@@ -24,7 +24,7 @@ def command(instance: Path, plan: Path) -> None:
     """
     filed = read_plan(plan)
     problem = read_instance(instance)
-    verdict = check_plan(problem, filed)
+    verdict = check(problem, filed)
     if not verdict.accepted:
         fail(f"{plan}: {verdict}", 3)
     costs, length = problem.costs, len(filed.actions or ())

@@ -8,8 +8,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib.metadata import EntryPoint, entry_points
 
-from smash.planners.protocol import Planner
+from smash.planners.protocol import Planner, SolveOptions, why_unsupported
 from smash.problem.errors import SmashError, Unsupported
+from smash.problem.extras import missing_extra
+from smash.problem.model import Instance
 
 GROUP = "smash.planners"
 DEFAULT = "smash"
@@ -44,7 +46,8 @@ def get_planner(name: str) -> Planner:
     try:
         planner: Planner = registered[plain].load()()
     except (ImportError, AttributeError) as error:
-        raise Unsupported(f"planner {name!r} is not installed: {error}") from None
+        missing = missing_extra(error, f"planner {name!r}")
+        raise missing or Unsupported(f"planner {name!r} is not installed: {error}") from None
     if plain != name:
         choose: Callable[[str], Planner] | None = getattr(planner, "with_encoding", None)
         if choose is None:
@@ -55,6 +58,26 @@ def get_planner(name: str) -> Planner:
     if lacks:
         raise Unsupported(f"planner {name!r} is not installed: {lacks}")
     return planner
+
+
+def make_ready(planner: Planner, name: str, instance: Instance, options: SolveOptions) -> None:
+    """Ask whether a planner takes a problem, then have it load what it loads once: all that precedes its clock.
+
+    Args:
+        planner: the planner.
+        name: what it is called.
+        instance: the problem.
+        options: what a plan may use.
+
+    Raises:
+        Unsupported: where it does not take the problem.
+    """
+    reason = why_unsupported(planner, instance, options)
+    if reason:
+        raise Unsupported(f"planner {name!r}: unsupported: {reason}")
+    prepare = getattr(planner, "prepare", None)
+    if prepare is not None:
+        prepare()
 
 
 def why_unknown(name: str) -> str | None:

@@ -12,8 +12,9 @@ from smash.problem.errors import (
     SmashError,
     Unsupported,
 )
-from smash.problem.files.instances import make_instance, read_instance, write_instance
+from smash.problem.files.instances import read_instance, write_instance
 from smash.problem.files.plans import read_plan, write_plan
+from smash.problem.making import make_instance
 from smash.problem.model import (
     TABLE,
     Action,

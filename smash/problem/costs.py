@@ -27,6 +27,9 @@ class Costs:
     positions: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     unit: str = "actions"
 
+    def __hash__(self) -> int:
+        return hash((frozenset(self.actions.items()), self.travel, frozenset(self.positions.items()), self.unit))
+
     @property
     def plain(self) -> bool:
         """Whether every action costs 1, so that a plan's cost is its length."""

@@ -18,6 +18,12 @@ class MalformedFile(SmashError):
         super().__init__(f"{where}: {problem}")
 
 
+class RefusedPlan(SmashError):
+    """A well-formed plan that the law refuses, given where a legal one is needed."""
+
+    exit_code = 3
+
+
 class IllegalAction(SmashError):
     """An action that the law does not allow in the state at hand."""
 

@@ -7,10 +7,12 @@ toppled blocks, whose poses are unknown to the planner.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import Any, NoReturn
 
 from smash.problem.costs import UNIT_COSTS, Costs
+from smash.problem.errors import SmashError
 
 TABLE = "table"
 """The source name of a pick from the table region; no location may be called so."""
@@ -53,12 +55,18 @@ class StacksGoal:
 
     stacks: Mapping[str, tuple[str, ...]]
 
+    def __hash__(self) -> int:
+        return hash(frozenset(self.stacks.items()))
+
 
 @dataclass(frozen=True, slots=True)
 class PositionsGoal:
     """Some blocks at an exact (location, height); per location the heights 1..k. The rest lies anywhere."""
 
     positions: Mapping[str, tuple[str, int]]
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self.positions.items()))
 
     def stacks(self) -> dict[str, tuple[str, ...]]:
         """Return the listed blocks per location, bottom first; locations without one are left out."""
@@ -75,6 +83,9 @@ class OnGoal:
     on: Mapping[str, str]
     bottom: tuple[str, ...] = ()
 
+    def __hash__(self) -> int:
+        return hash((frozenset(self.on.items()), self.bottom))
+
     def towers(self) -> list[tuple[str, ...]]:
         """Return the goal's towers, bottom first; a block of `bottom` that carries nothing is one of height 1."""
         above = {under: upper for upper, under in self.on.items()}
@@ -89,6 +100,15 @@ class OnGoal:
 
 
 Goal = StacksGoal | PositionsGoal | OnGoal
+
+
+def no_goal(goal: object) -> NoReturn:
+    """Refuse what is no goal: the last case of whoever asks for the kind of one.
+
+    Raises:
+        SmashError: naming what a goal is.
+    """
+    raise SmashError(f"{goal!r} is no goal; a StacksGoal, a PositionsGoal or an OnGoal is one")
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +137,8 @@ class Instance:
     `carriers`, `capacities` (of the aggregating actions that need one: name -> most blocks) and `costs` are what
     version 2 of the format adds; without them the actions are pick, place and topple, each at cost 1.
 
-    Build it by `read_instance` or `make_instance`, which check it; the fields are then trusted.
+    Build it by `read_instance` or `make_instance`, which check it; the fields are then trusted. Equal instances have
+    equal hashes, so that they can be kept in a set; nobody changes the mappings of one.
     """
 
     name: str
@@ -135,6 +156,63 @@ class Instance:
     def locations(self) -> tuple[str, ...]:
         """All stack locations: `stacks`, then `buffers`."""
         return self.stacks + self.buffers
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.blocks, self.stacks, self.buffers, frozenset(self.start.items()), self.table))
+
+    def __repr__(self) -> str:
+        kind = type(self.goal).__name__
+        return (
+            f"<Instance {self.name!r}: {_counted(len(self.blocks), 'block')} on {_counted(len(self.stacks), 'stack')} "
+            f"and {_counted(len(self.buffers), 'buffer')}, {kind}>"
+        )
+
+    def _repr_svg_(self) -> str | None:
+        """Return start and goal as a picture, for notebooks; None where the goal is none."""
+        from smash.problem.pictures import Arrangement, arrangements_svg  # solving needs none
+
+        try:
+            wanted, columns, remark = shown_goal(self)
+        except SmashError:
+            return None
+        shown = shown_locations(self)
+        further = [(carrier.name, carrier.holds) for carrier in self.carriers]
+        start = Arrangement(
+            f"start{idle_remark(self)}", [*((at, self.start[at]) for at in shown), *further], self.table
+        )
+        goal = Arrangement(f"goal{remark}", [(at, wanted.get(at, ())) for at in columns])
+        return arrangements_svg([start, goal], self.blocks)
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
+
+
+def shown_locations(instance: Instance) -> tuple[str, ...]:
+    """Return the locations that a picture of the start shows: all but the empty buffers."""
+    return instance.stacks + tuple(buffer for buffer in instance.buffers if instance.start[buffer])
+
+
+def idle_remark(instance: Instance) -> str:
+    """Return how many empty buffers a picture of the start leaves out, in words; nothing where there is none."""
+    idle = len(instance.locations) - len(shown_locations(instance))
+    return f" ({_counted(idle, 'empty buffer')} beside)" if idle else ""
+
+
+def shown_goal(instance: Instance) -> tuple[dict[str, tuple[str, ...]], tuple[str, ...], str]:
+    """Return what the goal asks for as piles, the columns to draw them on, and a remark for the title."""
+    match instance.goal:
+        case StacksGoal(stacks):
+            return dict(stacks), instance.stacks, ""
+        case PositionsGoal() as goal:
+            return goal.stacks(), instance.stacks, " (the rest anywhere)"
+        case OnGoal() as goal:
+            grounded, piles = set(goal.bottom), {}
+            for number, tower in enumerate(goal.towers()):
+                piles[f"{'floor' if tower[0] in grounded else 'any'} {number}"] = tower
+            return piles, tuple(piles), " (at any location, on its floor or on anything)"
+        case _:
+            no_goal(instance.goal)
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,3 +285,29 @@ class State:
     def place_of(self, name: str) -> str:
         """Return the point in space that a source or target stands for: a carrier's is its station."""
         return self.stations.get(name, name)
+
+    def __str__(self) -> str:
+        """A line for each pile, its blocks from the bottom to the top, then what is empty, the table, the hand."""
+        lines = [f"{_plain(location)}: {_listed(pile)}" for location, pile in self.piles.items() if pile]
+        empty = [location for location, pile in self.piles.items() if not pile]
+        if empty:
+            lines.append(f"empty: {_listed(empty)}")
+        for carrier, blocks in self.carried.items():
+            lines.append(f"{_plain(carrier)} at {_plain(self.stations[carrier])}: {_listed(sorted(blocks)) or 'empty'}")
+        if self.table:
+            lines.append(f"{TABLE} region: {_listed(sorted(self.table))}")
+        lines.append("hand: " + ("empty" if self.hand is None else _plain(self.hand)))
+        return "\n".join(lines)
+
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
+        """Print the piles in a notebook."""
+        printer.text(str(self))
+
+
+def _listed(names: Iterable[str]) -> str:
+    return " ".join(map(_plain, names))
+
+
+def _plain(name: str) -> str:
+    """Return a name as it stands in a line of text: in quotes where it would not be told apart there."""
+    return name if name.isprintable() and name and " " not in name else repr(name)

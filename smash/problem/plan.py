@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, get_args
 
-from smash.problem.model import Action, Instance, PlanOptions
+from smash.problem.model import Action, Aggregating, Instance, Pick, Place, PlanOptions
 from smash.problem.rules import Law, Verdict
 
 Status = Literal["optimal", "feasible", "infeasible", "unknown"]
@@ -45,6 +46,33 @@ class Plan:
         if self.actions is None:
             return None
         return len(self.actions) if self.stated_cost is None else self.stated_cost
+
+    def __repr__(self) -> str:
+        return f"<Plan {self}>"
+
+    def __str__(self) -> str:
+        found = "no plan" if self.actions is None else f"cost {self.cost}"
+        bound = "" if self.lower_bound is None else f", lower bound {self.lower_bound}"
+        return f"for {self.instance!r} by {self.planner}: {self.status}, {found}{bound}"
+
+    def _repr_svg_(self) -> str:
+        """Return the plan as a strip of its steps, for notebooks; a pick and its place are one."""
+        from smash.problem.pictures import Chip, chips_svg  # solving needs none
+
+        chips = [Chip(words, several) for words, several in _steps_in_words(self.actions or ())]
+        return chips_svg(f"Plan {self}", chips)
+
+
+def _steps_in_words(actions: Sequence[Action]) -> Iterator[tuple[str, bool]]:
+    """Yield the numbered steps, a pick and its place as one, and whether a step moves several blocks at once."""
+    following: list[Action | None] = [*actions[1:], None]
+    before: Action | None = None
+    for step, (action, after) in enumerate(zip(actions, following, strict=False), start=1):
+        if isinstance(action, Pick) and isinstance(after, Place):
+            yield f"{step}–{step + 1} · {action.block}: {action.source} → {after.target}", False
+        elif not (isinstance(action, Place) and isinstance(before, Pick)):
+            yield f"{step} · {action}".replace("'", ""), isinstance(action, Aggregating)
+        before = action
 
 
 def check_plan(instance: Instance, plan: Plan) -> Verdict:

@@ -22,6 +22,7 @@ from smash.problem.model import (
     PositionsGoal,
     StacksGoal,
     State,
+    no_goal,
 )
 
 
@@ -133,6 +134,8 @@ class Law:
                 return _positions_shortfall(goal, state)
             case OnGoal() as goal:
                 return _on_shortfall(goal, state)
+            case _:
+                no_goal(self.instance.goal)
 
     def check(self, actions: Iterable[Action]) -> Verdict:
         """Replay `actions` from the start and judge them: every step legal and the goal held at the end."""

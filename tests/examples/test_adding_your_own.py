@@ -19,8 +19,8 @@ from tests.oracle import optimal_cost
 from tests.strategies import instances, plan_options
 
 ROOT = Path(__file__).parents[2]
-EXAMPLES = ROOT / "examples"
-FIGURE_1 = EXAMPLES / "figure1.json"
+EXAMPLES = ROOT / "examples" / "extend"
+FIGURE_1 = ROOT / "examples" / "figure1.json"
 
 
 @pytest.fixture(scope="module")

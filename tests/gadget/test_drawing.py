@@ -8,11 +8,12 @@ from pathlib import Path
 import pytest
 
 from smash.gadget import gadget_of, smash_gadget
-from smash.gadget.drawing.figure import draw_gadget
+from smash.gadget.drawing.draw import write_motion
+from smash.gadget.drawing.figure import gadget_figure
 from smash.gadget.drawing.layout import lay_out
-from smash.gadget.drawing.pebbles import draw_motion, step_captions, strip_layers
-from smash.gadget.drawing.piles import draw_instance
-from smash.gadget.drawing.style import RADIUS
+from smash.gadget.drawing.pebbles import step_captions, strip_layers
+from smash.gadget.drawing.piles import instance_figure
+from smash.gadget.drawing.style import RADIUS, save
 from smash.gadget.encode import encode
 from smash.problem import Carrier, Carry, Lift, OnGoal, Pick, Place, PositionsGoal, SmashError, Topple, make_instance
 
@@ -45,15 +46,15 @@ def test_no_two_nodes_of_a_gadget_are_drawn_over_each_other(stacks, blocks):
 @pytest.mark.parametrize("suffix", [".png", ".pdf", ".svg"])
 def test_a_gadget_is_drawn_to_every_still_format(tmp_path, suffix):
     path = tmp_path / f"gadget{suffix}"
-    draw_gadget(smash_gadget(["s1", "s2"], 2), path)
+    save(gadget_figure(smash_gadget(["s1", "s2"], 2)), path)
     assert path.read_bytes().startswith(MAGIC[suffix])
 
 
 def test_odd_names_are_drawn(tmp_path, odd):
-    draw_instance(odd, tmp_path / "instance.svg")
-    draw_gadget(gadget_of(odd), tmp_path / "gadget.svg")
+    save(instance_figure(odd), tmp_path / "instance.svg")
+    save(gadget_figure(gadget_of(odd)), tmp_path / "gadget.svg")
     plan = [Topple("s 1", 2), Pick("a\nb", "table"), Place("a\nb", "$s$")]
-    draw_motion(encode(odd, plan), odd, tmp_path / "plan.svg")
+    write_motion(encode(odd, plan), odd, tmp_path / "plan.svg")
     assert "$x_2$"[:3] in (tmp_path / "instance.svg").read_text(encoding="utf-8")
 
 
@@ -68,9 +69,9 @@ def test_carriers_and_lifts_are_drawn(tmp_path):
         capacities={"lift": 2},
     )
     plan = [Pick("c", "s1"), Place("c", "tray"), Carry("tray", "right"), Lift("s1", 1, "s2")]
-    draw_gadget(gadget_of(instance), tmp_path / "gadget.png")
+    save(gadget_figure(gadget_of(instance)), tmp_path / "gadget.png")
     motion = encode(instance, plan)
-    draw_motion(motion, instance, tmp_path / "plan.svg")
+    write_motion(motion, instance, tmp_path / "plan.svg")
     places = lay_out(motion.gadget).nodes
     assert len(set(places)) == len(places)
     assert [caption for caption in step_captions(motion, instance) if caption] == [
@@ -82,9 +83,9 @@ def test_carriers_and_lifts_are_drawn(tmp_path):
 
 def test_an_instance_without_blocks_is_drawn(tmp_path):
     empty = make_instance(name="empty", blocks=[], stacks=["s"], start={}, goal=PositionsGoal({}))
-    draw_instance(empty, tmp_path / "instance.png")
-    draw_motion(encode(empty, []), empty, tmp_path / "motion.png")
-    draw_motion(encode(empty, []), empty, tmp_path / "motion.gif")
+    save(instance_figure(empty), tmp_path / "instance.png")
+    write_motion(encode(empty, []), empty, tmp_path / "motion.png")
+    write_motion(encode(empty, []), empty, tmp_path / "motion.gif")
 
 
 def test_captions_say_the_actions_of_each_step(odd):
@@ -101,12 +102,12 @@ def test_a_strip_has_the_start_the_staged_blocks_what_follows_and_the_end():
 @pytest.mark.parametrize("name", ["picture.txt", "picture"])
 def test_other_suffixes_are_refused(tmp_path, name):
     with pytest.raises(SmashError, match="allowed"):
-        draw_gadget(smash_gadget(["s1"], 1), tmp_path / name)
+        save(gadget_figure(smash_gadget(["s1"], 1)), tmp_path / name)
 
 
 def test_a_directory_that_is_not_there_is_one_line(tmp_path):
     with pytest.raises(SmashError, match="cannot be written"):
-        draw_gadget(smash_gadget(["s1"], 1), tmp_path / "no" / "x.png")
+        save(gadget_figure(smash_gadget(["s1"], 1)), tmp_path / "no" / "x.png")
 
 
 def test_the_command_animates_a_plan(tmp_path):

@@ -82,7 +82,7 @@ def test_the_plan_of_a_solved_start_is_found_where_the_machine_code_is_there_at_
 @pytest.mark.slow
 def test_compiled_and_interpreted_search_expand_the_same_nodes(monkeypatch):
     monkeypatch.setattr(engine, "WORK", {False: 1, True: 1})
-    for instance in generate("multi", 8, 0, 6, 3):
+    for instance in generate("multi", 8, buffers=0, count=6, seed=3):
         counts = []
         for nodes in (1_000_000, 1):
             monkeypatch.setattr(driver, "INTERPRETED_NODES", nodes)
@@ -92,7 +92,7 @@ def test_compiled_and_interpreted_search_expand_the_same_nodes(monkeypatch):
 
 
 def test_a_spent_budget_leaves_a_plan_and_a_proven_bound():
-    instance = next(generate("multi", 14, 0, 1, 0))
+    instance = generate("multi", 14, buffers=0)[0]
     started = perf_counter()
     result = AStarPlanner().solve(instance, SolveOptions(topple=False), 0.3)
     assert perf_counter() - started < 0.3 + 0.5
@@ -104,7 +104,7 @@ def test_a_spent_budget_leaves_a_plan_and_a_proven_bound():
 def test_spent_memory_ends_the_search_with_the_bound(monkeypatch):
     monkeypatch.setattr(driver, "INTERPRETED_NODES", 50)
     monkeypatch.setattr(driver.StateSearch, "_grow", lambda self, deadline: setattr(self, "ended", "memory"))
-    instance = next(generate("multi", 12, 0, 1, 0))
+    instance = generate("multi", 12, buffers=0)[0]
     result = AStarPlanner().solve(instance, SolveOptions(topple=False), 5)
     assert result.details["ended"] == "memory"
     assert result.status == "feasible"
@@ -113,7 +113,7 @@ def test_spent_memory_ends_the_search_with_the_bound(monkeypatch):
 
 @pytest.mark.parametrize("blocks", [40, 200])
 def test_the_budget_is_kept_where_one_expansion_takes_long(blocks):
-    instance = next(generate("multi", blocks, 12, 1, 0))
+    instance = generate("multi", blocks)[0]
     started = perf_counter()
     result = AStarPlanner().solve(instance, SolveOptions(topple=False), 1)
     assert perf_counter() - started < 1.5

@@ -76,7 +76,7 @@ def test_the_narrowest_pass_gives_legal_plans_of_every_goal(instance, options):
 
 
 def test_equal_seeds_find_equal_plans():
-    problem = Indexed.of(next(generate("multi", 9, 0, 1, 4)))
+    problem = Indexed.of(generate("multi", 9, buffers=0, seed=4)[0])
     options = PlanOptions(topple=False)
     first, second = (plans_of(BeamSearch(problem, options, 80, seed=3), most_width=8) for _ in range(2))
     assert first == second
@@ -84,7 +84,7 @@ def test_equal_seeds_find_equal_plans():
 
 
 def test_a_pass_that_left_a_state_out_proves_nothing():
-    problem = Indexed.of(next(generate("multi", 9, 0, 1, 4)))
+    problem = Indexed.of(generate("multi", 9, buffers=0, seed=4)[0])
     search = BeamSearch(problem, PlanOptions(topple=False), 80)
     plans_of(search, most_width=4)
     assert search.ended is None
@@ -92,7 +92,7 @@ def test_a_pass_that_left_a_state_out_proves_nothing():
 
 
 def test_layers_that_memory_does_not_hold_are_cut_and_prove_nothing():
-    problem = Indexed.of(next(generate("multi", 9, 0, 1, 4)))
+    problem = Indexed.of(generate("multi", 9, buffers=0, seed=4)[0])
     search = BeamSearch(problem, PlanOptions(topple=False), 80, memory=400)
     plans_of(search, seconds=0.2)
     assert search.ended is None
@@ -100,7 +100,7 @@ def test_layers_that_memory_does_not_hold_are_cut_and_prove_nothing():
 
 
 def test_the_deadline_is_kept():
-    problem = Indexed.of(next(generate("multi", 20, 0, 1, 0)))
+    problem = Indexed.of(generate("multi", 20, buffers=0)[0])
     search = BeamSearch(problem, PlanOptions(topple=False), 400)
     started = perf_counter()
     plans_of(search, seconds=0.3)
@@ -109,7 +109,7 @@ def test_the_deadline_is_kept():
 
 def test_no_plan_is_looked_for_before_the_machine_code_is_there(monkeypatch):
     monkeypatch.setattr(beam.Compiler, "code", lambda deadline: None)
-    search = BeamSearch(Indexed.of(next(generate("multi", 6, 0, 1, 1))), PlanOptions(), 60)
+    search = BeamSearch(Indexed.of(generate("multi", 6, buffers=0, seed=1)[0]), PlanOptions(), 60)
     assert search.run(perf_counter() + 10) is None
     assert search.ended is None
 
@@ -124,7 +124,7 @@ def test_three_hundred_blocks_are_left_to_others():
 
 
 def test_a_better_plan_of_others_is_to_be_beaten():
-    problem = Indexed.of(next(generate("multi", 6, 0, 1, 1)))
+    problem = Indexed.of(generate("multi", 6, buffers=0, seed=1)[0])
     options = PlanOptions(topple=False)
     search = BeamSearch(problem, options, 60)
     optimum = cost_of(plans_of(BeamSearch(problem, options, 60))[-1])

@@ -160,7 +160,7 @@ def test_a_horizon_that_is_too_short_is_never_infeasible_and_its_best_plan_never
 
 
 def test_a_warm_start_gives_its_plan_at_once_and_the_same_optimum():
-    instance = next(generate("multi", 4, 12, 1, 7))
+    instance = generate("multi", 4, seed=7)[0]
     cold, warm = solve(instance), solve(instance, SolveOptions(warm_start="greedy"))
     assert warm.incumbents[0].origin == "greedy"
     assert {incumbent.origin for incumbent in cold.incumbents} == {"milp"}
@@ -187,7 +187,7 @@ def test_two_locations_without_buffer_or_topple_may_be_infeasible():
 
 
 def test_what_is_too_large_is_said_at_once_and_is_not_infeasible():
-    instance = next(generate("multi", 60, 12, 1, 1))
+    instance = generate("multi", 60, seed=1)[0]
     result = solve(instance, budget=5.0)
     assert (result.status, result.incumbents) == ("unknown", ())
     assert any(words in result.details["stopped"] for words in ("at most", "edges", "time was up"))
@@ -204,7 +204,7 @@ def test_what_cannot_be_built_in_the_budget_is_not_begun(blocks, bound):
 
 
 def generate_one(blocks):
-    return next(generate("multi", blocks, buffers=2, count=1, seed=5))
+    return generate("multi", blocks, buffers=2, seed=5)[0]
 
 
 @settings(max_examples=60, deadline=None)

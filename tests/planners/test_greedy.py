@@ -46,7 +46,7 @@ def test_every_committed_instance_gets_a_plan(suite, topple):
 
 @pytest.mark.parametrize("topple", [True, False])
 def test_a_thousand_blocks_get_their_first_plan_within_seconds(topple):
-    instance = next(generate("multi", 1000, 12, 1, 0))
+    instance = generate("multi", 1000)[0]
     for buffers in (12, 1):
         cut = dataclasses.replace(
             instance,
@@ -60,14 +60,14 @@ def test_a_thousand_blocks_get_their_first_plan_within_seconds(topple):
 
 
 def test_no_pass_is_begun_that_would_end_after_the_budget():
-    instance = next(iter(generate("multi", 1000, buffers=2, count=1, seed=5)))
+    instance = generate("multi", 1000, buffers=2, seed=5)[0]
     began = perf_counter()
     first = next(iter(GreedyPlanner().solve(instance, SolveOptions(topple=False), 1e-9).incumbents))
     assert first.seconds <= perf_counter() - began < 3 * first.seconds + 0.5
 
 
 def test_patient_passes_go_on_to_the_deadline_and_only_improve():
-    problem = Indexed.of(next(generate("multi", 20, 0, 1, 0)))
+    problem = Indexed.of(generate("multi", 20, buffers=0)[0])
     started = perf_counter()
     costs = [cost_of(steps) for steps in greedy_steps(problem, PlanOptions(topple=False), started + 0.3, patient=True)]
     assert 0.1 < perf_counter() - started < 0.8

@@ -102,7 +102,7 @@ def test_what_takes_too_long_to_build_is_left_out(monkeypatch):
 
 
 def test_forty_blocks_keep_a_short_budget():
-    instance = next(generate("multi", 40, 2, 1, 5))
+    instance = generate("multi", 40, buffers=2, seed=5)[0]
     LayeredPlanner().prepare()
     started = perf_counter()
     solve(instance, SolveOptions(topple=False), budget=2.0)

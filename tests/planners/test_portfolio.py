@@ -62,7 +62,7 @@ def test_nine_blocks_are_proven_with_every_number_of_buffers(buffers, topple):
 
 def test_incumbents_improve_and_are_reported_at_once():
     seen = []
-    instance = next(generate("multi", 9, 1, 1, 5))
+    instance = generate("multi", 9, buffers=1, seed=5)[0]
     result = SmashPlanner().solve(
         instance, SolveOptions(topple=False), 10, lambda seconds, cost, plan: seen.append((seconds, cost, len(plan)))
     )
@@ -74,7 +74,7 @@ def test_incumbents_improve_and_are_reported_at_once():
 @pytest.mark.parametrize("budget", [0.05, 0.5])
 @pytest.mark.parametrize("blocks", [20, 150])
 def test_the_budget_is_kept_at_every_size(blocks, budget):
-    instance = next(generate("multi", blocks, 0, 1, 0))
+    instance = generate("multi", blocks, buffers=0)[0]
     started = perf_counter()
     result = SmashPlanner().solve(instance, SolveOptions(topple=False), budget)
     assert perf_counter() - started < budget + 0.5
@@ -83,7 +83,7 @@ def test_the_budget_is_kept_at_every_size(blocks, budget):
 
 
 def test_the_budget_is_kept_where_the_layered_model_is_large():
-    instance = next(generate("multi", 40, 2, 1, 5))
+    instance = generate("multi", 40, buffers=2, seed=5)[0]
     SmashPlanner().prepare()
     started = perf_counter()
     result = SmashPlanner().solve(instance, SolveOptions(topple=False), 2.0)
@@ -106,7 +106,7 @@ def test_two_locations_without_topple_are_refused_with_the_proof():
 
 
 def test_what_the_beam_found_and_proved_is_reported_at_once():
-    instance = next(generate("multi", 13, 0, 1, 4))
+    instance = generate("multi", 13, buffers=0, seed=4)[0]
     SmashPlanner().prepare()
     seen = []
     result = SmashPlanner().solve(
@@ -123,7 +123,7 @@ def test_a_beam_that_left_nothing_out_proves_the_plan_under_its_own_name(monkeyp
     monkeypatch.setattr("smash.planners.portfolio._Combined._search", lambda self, *_, **__: None)
     monkeypatch.setattr("smash.planners.portfolio._Combined._precedence", lambda self: None)
     monkeypatch.setattr("smash.planners.portfolio._Combined._layered", lambda self: None)
-    instance = next(generate("multi", 6, 0, 1, 4))
+    instance = generate("multi", 6, buffers=0, seed=4)[0]
     result = SmashPlanner().solve(instance, SolveOptions(topple=False), 20)
     assert (result.status, result.bound_origin) == ("optimal", "beam")
     assert result.cost == optimal_cost(instance, PlanOptions(topple=False))

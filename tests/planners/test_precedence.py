@@ -83,7 +83,7 @@ def test_with_as_many_buffers_as_blocks_every_optimum_is_proven(instance, option
 @pytest.mark.parametrize("topple", [True, False])
 @pytest.mark.parametrize("buffers", [0, 1, 12])
 def test_the_papers_sizes_are_solved_at_once(topple, buffers):
-    for instance in generate("multi", 9, buffers, 5, 7):
+    for instance in generate("multi", 9, buffers=buffers, count=5, seed=7):
         result = solve(instance, PlanOptions(topple))
         assert result.lower_bound <= result.cost
         if topple or buffers == 12:
@@ -92,7 +92,7 @@ def test_the_papers_sizes_are_solved_at_once(topple, buffers):
 
 @pytest.mark.parametrize("topple", [True, False])
 def test_a_single_goal_costs_two_or_three_with_topple_and_twice_its_depth_without(topple):
-    for instance in generate("single", 6, 12, 20, 3):
+    for instance in generate("single", 6, count=20, seed=3):
         ((target, _),) = instance.goal.positions.items()
         pile = next(pile for pile in instance.start.values() if target in pile)
         depth = len(pile) - pile.index(target)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 import os
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 from time import monotonic
 from typing import Any, ClassVar
 
+from smash.problem.extras import install_line, is_there
 from smash_baselines.engine import EnginePlanner, Run
 from smash_baselines.engines.outcomes import BUDGET_SPENT, MEMORY_SPENT, Outcome
 from smash_baselines.engines.process import EngineProcess
@@ -37,10 +37,8 @@ class AriesPlanner(EnginePlanner):
 
     def missing(self) -> str | None:
         """Return what is not installed, or None."""
-        for package in ("unified_planning", "up_aries", "grpc"):
-            if find_spec(package) is None:
-                return "install up-aries and unified-planning (extra `pddl`)"
-        return None
+        there = all(is_there(package) for package in ("unified_planning", "up_aries", "grpc"))
+        return None if there else install_line("up_aries")
 
     def takes_conditional_effects(self) -> bool:
         """Return whether it takes encodings with conditional effects: its server stops at them."""

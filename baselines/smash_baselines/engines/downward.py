@@ -12,6 +12,7 @@ from pathlib import Path
 from time import monotonic
 from typing import Any, ClassVar
 
+from smash.problem.extras import install_line
 from smash_baselines.engine import EnginePlanner, Run
 from smash_baselines.engines.configurations import Configuration
 from smash_baselines.engines.outcomes import BUDGET_SPENT, MEMORY_SPENT, Outcome, outcome_of
@@ -38,7 +39,7 @@ class DownwardPlanner(EnginePlanner):
     def missing(self) -> str | None:
         """Return what is not installed, or None."""
         engine = self.configuration.engine
-        return None if engine.root is not None else f"install {engine.package.replace('_', '-')} (extra `pddl`)"
+        return None if engine.root is not None else install_line(engine.package)
 
     def takes_conditional_effects(self) -> bool:
         """Return whether its search does."""

@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import ClassVar
 
+from smash.problem.extras import install_line
 from smash_baselines.engine import EnginePlanner, Run
 from smash_baselines.engines.outcomes import BUDGET_SPENT, MEMORY_SPENT, Outcome
 from smash_baselines.engines.process import EngineProcess
@@ -34,7 +35,7 @@ class EnhspPlanner(EnginePlanner):
     def missing(self) -> str | None:
         """Return what is not installed, or None."""
         if _jar() is None:
-            return "install up-enhsp (extra `pddl`)"
+            return install_line("up_enhsp")
         return None if shutil.which("java") else "it needs Java: no `java` on the PATH"
 
     def run(self, run: Run) -> Outcome:

@@ -31,7 +31,7 @@ from smash.motion.obstacles import Scene
 from smash.motion.paths import Path
 from smash.motion.poses import top_down
 from smash.motion.robot import LOWER, READY, UPPER
-from smash.problem.files.instances import make_instance
+from smash.problem.making import make_instance
 from smash.problem.model import Instance, PositionsGoal
 
 TOUCH = 0.003

@@ -29,7 +29,7 @@ from smash.execution.trials.estimates import Estimates, Rate
 from smash.motion.errors import ExecutionFailure
 from smash.motion.robot import READY
 from smash.problem.actions.topple import Topple
-from smash.problem.files.instances import make_instance
+from smash.problem.making import make_instance
 from smash.problem.model import PositionsGoal
 
 TRIAL_FORMAT = "smash-topple-trial/1"

@@ -21,7 +21,7 @@ from smash.execution.viewing.pictures import block_colours
 from smash.execution.viewing.recording import Recording
 from smash.motion.robot import panda_urdf
 from smash.problem.files.documents import write_text
-from smash.problem.model import Goal, Instance, OnGoal, PositionsGoal, StacksGoal
+from smash.problem.model import Goal, Instance, OnGoal, PositionsGoal, StacksGoal, no_goal
 
 TEMPLATE = Path(__file__).parent / "replay.html"
 MESHES = ("link0", *(f"link{number}" for number in range(1, 8)), "hand", "finger", "finger")
@@ -78,6 +78,8 @@ def goal_in_words(goal: Goal) -> str:
             piles, rest = goal.stacks(), "bottom first, other blocks anywhere"
         case StacksGoal():
             piles, rest = {name: pile for name, pile in goal.stacks.items() if pile}, "bottom first"
+        case _:
+            no_goal(goal)
     named = "; ".join(f"{location} = {' '.join(pile)}" for location, pile in piles.items())
     return f"{named} ({rest})" if named else "nothing"
 

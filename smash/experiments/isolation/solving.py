@@ -16,8 +16,8 @@ from time import perf_counter
 from typing import Any, NoReturn
 
 from smash.experiments.isolation.job import Job
-from smash.planners.protocol import PlanResult, why_unsupported
-from smash.planners.registry import UnknownPlanner, get_planner
+from smash.planners.protocol import PlanResult
+from smash.planners.registry import UnknownPlanner, get_planner, make_ready
 from smash.problem.errors import SmashError, Unsupported
 from smash.problem.files.plans import action_list
 from smash.problem.model import Action
@@ -47,12 +47,7 @@ def _solve(job: Job, voice: _Voice) -> None:
     except SmashError as error:  # no such planner, or no such encoding for it
         return voice.say(kind="failed", outcome="malformed", reason=str(error))
     try:
-        reason = why_unsupported(planner, job.instance, job.options)
-        if reason:
-            raise Unsupported(f"planner {job.planner!r}: unsupported: {reason}")
-        prepare = getattr(planner, "prepare", None)
-        if prepare is not None:
-            prepare()
+        make_ready(planner, job.planner, job.instance, job.options)
         voice.say(kind="solving")
         voice.started = perf_counter()
         result = planner.solve(job.instance, job.options, job.budget, voice)

@@ -23,6 +23,7 @@ import msgspec
 from smash.experiments.environment import commit, load
 from smash.experiments.isolation.lifetime import end_with_parent
 from smash.experiments.reproduction.stages import MadeFrom, Step, Steps, code_hash, file_hash, made_from
+from smash.problem.extras import install_line, is_known
 from smash.problem.files.documents import convert, read_bytes, write_text
 
 HEARTBEAT = 10.0
@@ -141,7 +142,7 @@ class Reproduction:
     def _plan(self, step: Step, before: dict[str, Planned], running: bool = False) -> Planned:
         record = self._read(step)
         if lacking := step.lacking():
-            return Planned(step, "not run", f"not installed: {', '.join(lacking)}", record)
+            return Planned(step, "not run", f"not installed: {', '.join(lacking)}{_how_to_get(lacking)}", record)
         unmade = [name for name in step.after if before[name].plan not in ("done", "kept", "not run")]
         if running and step.after and not any(before[name].plan in ("done", "kept") for name in step.after):
             return Planned(step, "not run", f"there is nothing of {', '.join(step.after)}", record)
@@ -292,3 +293,9 @@ def last_line(log: Path) -> str:
         said.seek(max(0, said.seek(0, 2) - 2000))
         lines = said.read().decode(errors="replace").splitlines()
     return next((line.strip() for line in reversed(lines) if any(map(str.isalnum, line))), "")
+
+
+def _how_to_get(packages: Sequence[str]) -> str:
+    """Return the lines that install packages, in brackets; nothing where no extra brings them."""
+    lines = dict.fromkeys(install_line(package) for package in packages if is_known(package))
+    return f" ({'; '.join(lines)})" if lines else ""

@@ -13,7 +13,8 @@ from typing import Any
 
 from smash.experiments.isolation.job import grace
 from smash.experiments.sweeps.experiment import Run
-from smash.problem.errors import SmashError, Unsupported
+from smash.problem.errors import SmashError
+from smash.problem.extras import require
 
 WORKERS_OWN_MEMORY = 1024
 """What a worker needs beside the run that it supervises [MiB]."""
@@ -26,13 +27,12 @@ def connected(where: str) -> Iterator[Any]:
     """Connect to the Dask scheduler at an address, or to the one that has written the file `where`.
 
     Raises:
-        Unsupported: where Dask is not installed.
+        MissingExtra: where Dask is not installed.
         SmashError: where no scheduler answers.
     """
-    try:
-        from distributed import Client
-    except ImportError:
-        raise Unsupported("Dask is not installed: pip install 'smash-testbed[cluster]'") from None
+    require("--dask", "distributed")
+    from distributed import Client
+
     for name in [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]:
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is said by the sweep
     place = {"scheduler_file": where} if Path(where).is_file() else {"address": where}

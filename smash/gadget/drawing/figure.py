@@ -4,30 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from smash.gadget.drawing.layout import DECK, Layout, arc_height, lay_out
-from smash.gadget.drawing.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    INK,
-    PALE,
-    PALE_BLUE,
-    PALE_PINK,
-    PINK,
-    RADIUS,
-    check_suffix,
-    new_figure,
-    save,
-    short,
-)
+from smash.gadget.drawing.style import BLUE, GREEN, PALE_BLUE, RADIUS, new_figure
 from smash.gadget.elements import EdgeKind, Node, NodeKind
 from smash.gadget.graph import Gadget
+from smash.problem.pictures import GREY, INK, PALE, PALE_PINK, PINK, short
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 FILLS = {"node": PALE, "pink": PALE_PINK, "blue": PALE_BLUE}
 """Fill colours of the legend's node marks."""
@@ -35,13 +22,12 @@ SCALE = 0.42
 """Inches per height."""
 
 
-def draw_gadget(gadget: Gadget, path: Path) -> None:
-    """Draw a gadget with its legend to a PNG, PDF or SVG file.
+def gadget_figure(gadget: Gadget) -> Figure:
+    """Return a figure of a gadget with its legend.
 
     Raises:
-        SmashError: where the suffix is none of these or the file cannot be written.
+        MissingExtra: where matplotlib is not installed.
     """
-    check_suffix(path)
     layout = lay_out(gadget)
     low, high = vertical_extent(gadget, layout)
     legend = _legend(gadget)
@@ -52,7 +38,7 @@ def draw_gadget(gadget: Gadget, path: Path) -> None:
     paint_gadget(axes, gadget, layout)
     frame(axes, gadget, layout)
     _paint_legend(figure.add_axes((0.0, 0.0, 1.0, 1 - share)), legend)
-    save(figure, path)
+    return figure
 
 
 def vertical_extent(gadget: Gadget, layout: Layout) -> tuple[float, float]:

@@ -11,27 +11,18 @@ from typing import TYPE_CHECKING, Any
 from smash.gadget.decode import step_actions
 from smash.gadget.drawing.figure import SCALE, frame, paint_gadget, vertical_extent
 from smash.gadget.drawing.layout import DECK, Layout, Point, lay_out
-from smash.gadget.drawing.style import (
-    BLUE,
-    INK,
-    RADIUS,
-    STILLS,
-    block_colours,
-    check_suffix,
-    ink_on,
-    new_figure,
-    save,
-    short,
-)
+from smash.gadget.drawing.style import BLUE, RADIUS, new_figure
 from smash.gadget.elements import NodeKind
 from smash.gadget.motion import PebbleMotion
 from smash.problem.errors import MalformedFile
 from smash.problem.model import Action, Instance, Pick, Place, State
+from smash.problem.pictures import INK, block_colours, ink_on, short
 from smash.problem.rules import Law
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 BETWEEN = 5
 """Animation frames from one layer to the next."""
@@ -41,18 +32,22 @@ MOST_FRAMES = 12
 """Frames of a strip."""
 
 
-def draw_motion(motion: PebbleMotion, instance: Instance, path: Path) -> None:
-    """Draw a motion of `instance`: animated where the suffix is .gif, else a strip of frames (PNG, PDF, SVG).
+def motion_figure(motion: PebbleMotion, instance: Instance) -> Figure:
+    """Return a figure of a motion of `instance`: a strip of frames.
 
     Raises:
-        SmashError: where the suffix is none of these or the file cannot be written.
+        MissingExtra: where matplotlib is not installed.
     """
-    check_suffix(path, (*STILLS, ".gif"))
-    captions = step_captions(motion, instance)
-    if path.suffix.lower() == ".gif":
-        _animate(motion, captions, path)
-    else:
-        _strip(motion, captions, path)
+    return _strip(motion, step_captions(motion, instance))
+
+
+def write_animation(motion: PebbleMotion, instance: Instance, path: Path) -> None:
+    """Write a motion of `instance` as an animated GIF.
+
+    Raises:
+        SmashError: where matplotlib is not installed or the file cannot be written.
+    """
+    _animate(motion, step_captions(motion, instance), path)
 
 
 def step_captions(motion: PebbleMotion, instance: Instance) -> list[str]:
@@ -139,7 +134,7 @@ def strip_layers(captions: Sequence[str], staged: Collection[int] = ()) -> list[
     return [chosen[round(index * (len(chosen) - 1) / (MOST_FRAMES - 1))] for index in range(MOST_FRAMES)]
 
 
-def _strip(motion: PebbleMotion, captions: list[str], path: Path) -> None:
+def _strip(motion: PebbleMotion, captions: list[str]) -> Figure:
     layout = lay_out(motion.gadget)
     low, high = vertical_extent(motion.gadget, layout)
     wide, tall = SCALE * (layout.right - layout.left + 2.6), SCALE * (high - low) + 0.3
@@ -159,7 +154,7 @@ def _strip(motion: PebbleMotion, captions: list[str], path: Path) -> None:
             (column + 0.03) / columns, 1 - (row + 0.25 / tall) / rows, _title(captions, layer),
             fontsize=9, color=INK, va="bottom", parse_math=False,
         )  # fmt: skip
-    save(figure, path)
+    return figure
 
 
 def _title(captions: Sequence[str], layer: int) -> str:
@@ -169,13 +164,13 @@ def _title(captions: Sequence[str], layer: int) -> str:
 
 
 def _animate(motion: PebbleMotion, captions: list[str], path: Path) -> None:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from PIL import Image
-
     layout = lay_out(motion.gadget)
     low, high = vertical_extent(motion.gadget, layout)
     wide, tall = SCALE * (layout.right - layout.left + 2.6), SCALE * (high - low) + 0.3
     figure = new_figure(wide, tall)
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from PIL import Image
+
     figure.set_dpi(min(130.0, 1600 / wide))
     canvas: Any = FigureCanvasAgg(figure)
     axes = figure.add_axes((0, 0, 1, 1 - 0.3 / tall))

@@ -3,25 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from smash.gadget.drawing.style import (
-    GREY,
-    INK,
-    PALE_PINK,
-    PINK,
-    block_colours,
-    check_suffix,
-    ink_on,
-    new_figure,
-    save,
-    short,
-)
-from smash.problem.model import Instance, OnGoal, PositionsGoal, StacksGoal
+from smash.gadget.drawing.style import new_figure
+from smash.problem.model import Instance, idle_remark, shown_goal, shown_locations
+from smash.problem.pictures import GREY, INK, PALE_PINK, PINK, block_colours, ink_on, short
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 PITCH = 1.35
 """Distance between neighbouring locations, in blocks."""
@@ -29,18 +19,15 @@ SCALE = 0.36
 """Inches per block."""
 
 
-def draw_instance(instance: Instance, path: Path) -> None:
-    """Draw start and goal side by side to a PNG, PDF or SVG file.
+def instance_figure(instance: Instance) -> Figure:
+    """Return a figure of start and goal side by side.
 
     Raises:
-        SmashError: where the suffix is none of these or the file cannot be written.
+        MissingExtra: where matplotlib is not installed.
     """
-    check_suffix(path)
-    goal, locations, note = goal_piles(instance)
+    goal, locations, note = shown_goal(instance)
     tall = max([1, *map(len, instance.start.values()), *map(len, goal.values())])
-    shown = [*instance.stacks, *(buffer for buffer in instance.buffers if instance.start[buffer])]
-    idle = len(instance.locations) - len(shown)
-    remark = f" ({idle} empty buffer{'s' if idle > 1 else ''} beside)" if idle else ""
+    shown = shown_locations(instance)
     widths = [PITCH * max(5, len(shown)), PITCH * max(5, len(locations))]
     table_rows = -(-len(instance.table) // int((widths[0] - 0.2) / 1.15))
     low = -1.1 - (1.3 + 1.15 * table_rows if instance.table else 0.0)
@@ -53,27 +40,13 @@ def draw_instance(instance: Instance, path: Path) -> None:
     paint_piles(axes, locations, goal, colours, widths[0] + gap)
     if instance.table:
         _paint_table(axes, instance.table, colours, widths[0], low)
-    for x, title in ((0.0, f"start{remark}"), (widths[0] + gap, f"goal{note}")):
+    for x, title in ((0.0, f"start{idle_remark(instance)}"), (widths[0] + gap, f"goal{note}")):
         axes.text(x, high - 0.1, title, fontsize=9, color=INK, va="top", ha="left")
     axes.set_xlim(-0.1, sum(widths) + gap + 0.1)
     axes.set_ylim(low, high)
     axes.set_aspect("equal")
     axes.axis("off")
-    save(figure, path)
-
-
-def goal_piles(instance: Instance) -> tuple[dict[str, tuple[str, ...]], tuple[str, ...], str]:
-    """Return what the goal asks for as piles, the columns to draw them on, and a remark for the title."""
-    match instance.goal:
-        case StacksGoal(stacks):
-            return dict(stacks), instance.stacks, ""
-        case PositionsGoal() as goal:
-            return goal.stacks(), instance.stacks, " (the rest anywhere)"
-        case OnGoal() as goal:
-            grounded, piles = set(goal.bottom), {}
-            for number, tower in enumerate(goal.towers()):
-                piles[f"{'floor' if tower[0] in grounded else 'any'} {number}"] = tower
-            return piles, tuple(piles), " (at any location, on its floor or on anything)"
+    return figure
 
 
 def paint_piles(

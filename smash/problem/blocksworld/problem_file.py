@@ -15,7 +15,7 @@ from typing import NoReturn
 from smash.problem.blocksworld.sexpr import Expression, parse_expression
 from smash.problem.errors import MalformedFile
 from smash.problem.files.documents import read_bytes
-from smash.problem.files.instances import make_instance
+from smash.problem.making import make_instance
 from smash.problem.model import Instance, OnGoal
 
 HAND_EMPTY = frozenset({"handempty", "hand-empty", "armempty", "arm-empty"})

@@ -3,16 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import NoReturn
 
 from smash.problem.actions.registry import FAMILY
 from smash.problem.errors import MalformedFile
-from smash.problem.model import TABLE, Carrier, Instance, OnGoal, PositionsGoal, StacksGoal
+from smash.problem.model import TABLE, Carrier, Instance, OnGoal, PositionsGoal, StacksGoal, no_goal
 
 MOST_COST = 1_000_000
 """Highest cost of an action, and of a metre: sums of shares must stay exact in floating point."""
 FARTHEST = 1000
 """Farthest that a place may be from the origin [m]."""
+
+
+def checked(instance: Instance, where: str) -> Instance:
+    """Return an instance that is sound, with every location in its start.
+
+    Raises:
+        MalformedFile: about the first defect.
+    """
+    InstanceChecker(instance, where).check()
+    return replace(instance, start={location: instance.start.get(location, ()) for location in instance.locations})
 
 
 class InstanceChecker:
@@ -48,6 +59,8 @@ class InstanceChecker:
                 self._positions_goal(goal)
             case OnGoal() as goal:
                 self._on_goal(goal)
+            case _:
+                no_goal(self.instance.goal)
 
     def _names(self) -> None:
         self._once("blocks", self.instance.blocks)

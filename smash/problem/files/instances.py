@@ -9,17 +9,15 @@ by a `MalformedFile` whose one line says where and what is allowed.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from typing import Any, Literal, cast
 
 import msgspec
 
 from smash.problem.costs import UNIT_COSTS, Costs
 from smash.problem.errors import MalformedFile
-from smash.problem.files.checking import InstanceChecker
+from smash.problem.files.checking import checked
 from smash.problem.files.documents import check_format, convert, one_key_a_line, parse_json, read_bytes, write_text
-from smash.problem.model import Carrier, Goal, Instance, OnGoal, PositionsGoal, StacksGoal
+from smash.problem.model import Carrier, Goal, Instance, OnGoal, PositionsGoal, StacksGoal, no_goal
 
 INSTANCE_FORMAT = "smash-instance/1"
 INSTANCE_FORMAT_2 = "smash-instance/2"
@@ -104,24 +102,24 @@ def instance_from_document(document: Any, where: str = "instance") -> Instance:
             goal = PositionsGoal(dict(positions))
         case _OnGoalFile(on=on, bottom=bottom):
             goal = OnGoal(dict(on), tuple(bottom))
-    return make_instance(
+    instance = Instance(
         name=file.name,
-        blocks=file.blocks,
-        stacks=file.stacks,
-        buffers=file.buffers,
-        start=file.start,
+        blocks=tuple(file.blocks),
+        stacks=tuple(file.stacks),
+        buffers=tuple(file.buffers),
+        start={location: tuple(pile) for location, pile in file.start.items()},
         goal=goal,
-        table=file.table,
-        where=where,
+        table=tuple(file.table),
         **(_additions(file) if isinstance(file, _InstanceFile2) else {}),
     )
+    return checked(instance, where)
 
 
 def _additions(file: _InstanceFile2) -> dict[str, Any]:
-    """Return what version 2 adds, as arguments of `make_instance`."""
+    """Return the fields of an instance that version 2 adds."""
     costs = file.costs
     return {
-        "carriers": [Carrier(c.name, tuple(c.stations), c.at, c.capacity, tuple(c.holds)) for c in file.carriers],
+        "carriers": tuple(Carrier(c.name, tuple(c.stations), c.at, c.capacity, tuple(c.holds)) for c in file.carriers),
         "capacities": file.capacities,
         "costs": Costs(costs.actions, costs.travel, costs.positions, costs.unit),
     }
@@ -139,41 +137,6 @@ def _check_goal_keys(goal: Any, where: str) -> None:
             raise MalformedFile(where, f"`goal`: unknown key {key!r}; allowed: {', '.join(GOAL_KEYS[kind])}")
 
 
-def make_instance(
-    *,
-    name: str,
-    blocks: Iterable[str],
-    stacks: Iterable[str],
-    start: Mapping[str, Iterable[str]],
-    goal: Goal,
-    buffers: Iterable[str] = (),
-    table: Iterable[str] = (),
-    carriers: Iterable[Carrier] = (),
-    capacities: Mapping[str, int] | None = None,
-    costs: Costs = UNIT_COSTS,
-    where: str = "instance",
-) -> Instance:
-    """Build an instance and check it whole.
-
-    Raises:
-        MalformedFile: with one line that says where and what is allowed.
-    """
-    instance = Instance(
-        name=name,
-        blocks=tuple(blocks),
-        stacks=tuple(stacks),
-        buffers=tuple(buffers),
-        start={location: tuple(pile) for location, pile in start.items()},
-        goal=goal,
-        table=tuple(table),
-        carriers=tuple(carriers),
-        capacities=dict(capacities or {}),
-        costs=costs,
-    )
-    InstanceChecker(instance, where).check()
-    return replace(instance, start={location: instance.start.get(location, ()) for location in instance.locations})
-
-
 def instance_document(instance: Instance) -> dict[str, Any]:
     """Return the document of an instance; empty locations are left out of `start`."""
     match instance.goal:
@@ -183,6 +146,8 @@ def instance_document(instance: Instance) -> dict[str, Any]:
             goal = {"kind": "positions", "positions": {k: list(v) for k, v in positions.items()}}
         case OnGoal(on, bottom):
             goal = {"kind": "on", "on": dict(on), "bottom": list(bottom)}
+        case _:
+            no_goal(instance.goal)
     document: dict[str, Any] = {
         "format": INSTANCE_FORMAT,
         "name": instance.name,

@@ -15,9 +15,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from smash.problem.files.instances import make_instance
+from smash.problem.making import make_instance
 from smash.problem.model import Goal, Instance, OnGoal, PositionsGoal, StacksGoal
-from smash.problem.sets.generators import block_names, buffer_names, cut
+from smash.problem.sets.generators import block_names, buffer_names, cut, stack_names
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ def open_set(name: str, seed: int) -> Iterator[Instance]:
 def draw_instance(name: str, shape: Shape, draw: random.Random) -> Instance:
     """Draw an instance of a shape: uniform permutations, cut into stacks at uniform places."""
     blocks = block_names(shape.blocks)
-    stacks = tuple(f"s{number}" for number in range(1, shape.stacks + 1))
+    stacks = stack_names(shape.stacks)
     order = draw.sample(blocks, len(blocks))
     toppled = round(shape.toppled * len(order))
     table, standing = order[:toppled], order[toppled:]

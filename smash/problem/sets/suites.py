@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import itertools
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
 from smash.problem.errors import MalformedFile
-from smash.problem.files.instances import make_instance, read_instance
+from smash.problem.files.instances import read_instance
+from smash.problem.making import fresh_names, make_instance
 from smash.problem.model import TABLE, Instance
 from smash.problem.sets.generators import generate
 from smash.problem.sets.open_instances import FAMILIES, open_set
 
 SUITES = Path(__file__).parent / "committed"
 SUITE_SEED = 2026
-SUITE_BUFFERS = 12
 SUITE_COUNT = 20
 PAPER_SUITES = {f"{kind}-{size}": (kind, size) for kind in ("single", "multi") for size in (4, 6, 9)}
 """The committed benchmark sets: name -> (benchmark, blocks); 20 instances with 12 buffers each."""
@@ -25,32 +26,36 @@ def suite_names() -> list[str]:
     return sorted(path.name for path in SUITES.iterdir() if path.is_dir())
 
 
-def suite_files(suite: str) -> list[Path]:
+def suite_files(name: str | os.PathLike[str]) -> list[Path]:
     """Return the instance files of a committed set or of a directory, sorted by name; an instance file is its own set.
 
     Raises:
         MalformedFile: where it is none of these, or holds no instance file.
     """
-    directory = SUITES / suite if suite in suite_names() else Path(suite)
+    where = os.fspath(name)
+    directory = SUITES / where if where in suite_names() else Path(where)
     if directory.is_file():
         return [directory]
     if not directory.is_dir():
         known = ", ".join(suite_names())
-        raise MalformedFile(suite, f"neither a directory of instance files nor a committed set ({known})")
+        raise MalformedFile(where, f"neither a directory of instance files nor a committed set ({known})")
     files = sorted(directory.glob("*.json"))
     if not files:
-        raise MalformedFile(suite, "the directory holds no instance file (*.json)")
+        raise MalformedFile(where, "the directory holds no instance file (*.json)")
     return files
 
 
-def read_suite(suite: str) -> list[Instance]:
+def read_suite(name: str | os.PathLike[str]) -> list[Instance]:
     """Read all instances of a set.
+
+    Args:
+        name: a committed set (`suite_names`), a directory of instance files, or one instance file.
 
     Raises:
         MalformedFile: where one of them is refused, or two have the same name.
     """
     instances: dict[str, Instance] = {}
-    for file in suite_files(suite):
+    for file in suite_files(name):
         instance = read_instance(file)
         if instance.name in instances:
             raise MalformedFile(str(file), f"`name`: {instance.name!r} stands twice in the set")
@@ -70,7 +75,7 @@ def with_buffers(instance: Instance, count: int) -> Instance:
     empty = [buffer for buffer in instance.buffers if not instance.start[buffer]][: count - len(held)]
     kept = [buffer for buffer in instance.buffers if buffer in held or buffer in empty]
     taken = {*instance.locations, TABLE}
-    fresh = (name for number in itertools.count(1) if (name := f"u{number}") not in taken)
+    fresh = fresh_names("u", taken)
     return make_instance(
         name=instance.name,
         blocks=instance.blocks,
@@ -97,4 +102,4 @@ def made_again(name: str) -> Iterator[Instance]:
     if name in FAMILIES:
         return open_set(name, SUITE_SEED)
     kind, size = PAPER_SUITES[name]
-    return generate(kind, size, SUITE_BUFFERS, SUITE_COUNT, SUITE_SEED)
+    return iter(generate(kind, size, count=SUITE_COUNT, seed=SUITE_SEED))

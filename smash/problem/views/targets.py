@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from smash.problem.model import OnGoal, PositionsGoal, StacksGoal
+from smash.problem.model import OnGoal, PositionsGoal, StacksGoal, no_goal
 from smash.problem.views.numbered import Indexed
 
 Piles = tuple[tuple[int, ...], ...]
@@ -40,6 +40,8 @@ def goal_piles(problem: Indexed) -> Piles | None:
             wanted = goal.stacks()
         case OnGoal():
             return None
+        case _:
+            no_goal(problem.instance.goal)
     number = problem.block_number
     return tuple(tuple(number[block] for block in wanted.get(q, ())) for q in problem.instance.locations)
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from smash.planners.milp.arrays import Floats, Milp, MilpResult, MilpStatus, OnSolution
 from smash.problem.errors import Unsupported
+from smash.problem.extras import require
 
 
 def solve(
@@ -28,11 +29,9 @@ def solve(
     Raises:
         Unsupported: where gurobipy is not installed, or its licence does not take a model of this size.
     """
-    try:
-        import gurobipy
-        import scipy.sparse  # noqa: F401
-    except ImportError:
-        raise Unsupported("gurobipy or scipy is not installed (the extra `gurobi`)") from None
+    require("Gurobi", "gurobipy")
+    import gurobipy
+
     began = perf_counter()
     try:
         with gurobipy.Env(params={"OutputFlag": 0}) as environment, gurobipy.Model(env=environment) as program:

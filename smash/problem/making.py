@@ -1,0 +1,150 @@
+"""Instances from Python: what a start and a goal leave open follows from them, and the whole is checked."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Container, Iterable, Iterator, Mapping
+from typing import Any
+
+from smash.problem.costs import UNIT_COSTS, Costs
+from smash.problem.errors import MalformedFile
+from smash.problem.files.checking import checked
+from smash.problem.model import TABLE, Carrier, Goal, Instance, OnGoal, PositionsGoal, StacksGoal, no_goal
+
+Piles = Mapping[str, Iterable[str]]
+"""Location -> blocks, bottom first."""
+
+
+def make_instance(
+    start: Piles,
+    goal: Goal | Piles,
+    *,
+    name: str = "instance",
+    blocks: Iterable[str] | None = None,
+    stacks: Iterable[str] | int = (),
+    buffers: Iterable[str] | int = (),
+    table: Iterable[str] = (),
+    carriers: Iterable[Carrier] = (),
+    capacities: Mapping[str, int] | None = None,
+    costs: Costs = UNIT_COSTS,
+    where: str = "instance",
+) -> Instance:
+    """Build an instance and check it whole. A start and a goal are enough.
+
+    Example:
+        `make_instance(start={"s1": ["a", "b"], "s2": ["c"]}, goal={"s2": ["c", "a", "b"]})`
+
+    Args:
+        start: location -> blocks, bottom first. A location that it leaves out is empty.
+        goal: a `StacksGoal`, `PositionsGoal` or `OnGoal`; a mapping is the whole arrangement, as in `StacksGoal`.
+        name: the instance's name.
+        blocks: all blocks, in the order in which they are numbered; None: those of `start`, `table` and `carriers`.
+        stacks: names of stacks, which come first; locations that `start` and `goal` name beside them and beside the
+            buffers are stacks too, in the order in which they appear. A number adds so many to those: `s1`, `s2`, …,
+            names that are taken left out.
+        buffers: names of all buffers, or their number: `u1`, `u2`, …, names that are taken left out.
+        table: blocks that start in the table region.
+        carriers: things that hold blocks and are moved with them.
+        capacities: of the aggregating actions that need one: name -> most blocks.
+        costs: what actions cost; every action 1, where it is left out.
+        where: what errors call the instance.
+
+    Raises:
+        MalformedFile: with one line that says where and what is allowed.
+    """
+    holding, fallen = tuple(carriers), tuple(table)
+    piles = _piles("start", start, where, letters=blocks is not None)
+    meant = _goal(goal, where)
+    named = [] if isinstance(buffers, int) else _names("buffers", buffers, where)
+    given = [] if isinstance(stacks, int) else _names("stacks", stacks, where)
+    follow = dict.fromkeys(at for at in (*piles, *_locations(meant)) if at not in given and at not in named)
+    locations = [*given, *follow]
+    if isinstance(stacks, int):
+        locations += _fresh("stacks", "s", stacks, (*locations, *named), where)
+    if isinstance(buffers, int):
+        named = _fresh("buffers", "u", buffers, locations, where)
+    if blocks is None:
+        standing = [*piles.values(), fallen, *(carrier.holds for carrier in holding)]
+        blocks = dict.fromkeys(block for pile in standing for block in pile)
+    instance = Instance(
+        name=name,
+        blocks=_names("blocks", blocks, where),
+        stacks=tuple(locations),
+        buffers=tuple(named),
+        start=piles,
+        goal=meant,
+        table=fallen,
+        carriers=holding,
+        capacities=dict(capacities or {}),
+        costs=costs,
+    )
+    return checked(instance, where)
+
+
+def fresh_names(letter: str, taken: Container[str]) -> Iterator[str]:
+    """Yield `s1`, `s2`, … (with the letter `s`) without those that are taken."""
+    return (name for number in itertools.count(1) if (name := f"{letter}{number}") not in taken)
+
+
+def _fresh(part: str, letter: str, count: int, taken: tuple[str, ...] | list[str], where: str) -> list[str]:
+    if count < 0:
+        raise MalformedFile(where, f"`{part}`: {count} is not allowed; names, or a number from 0")
+    return list(itertools.islice(fresh_names(letter, {*taken, TABLE}), count))
+
+
+def _names(part: str, names: Any, where: str) -> tuple[str, ...]:
+    """Return names as a tuple; anything else is refused."""
+    if not isinstance(names, Iterable) or (isinstance(names, str) and part in ("stacks", "buffers")):
+        raise MalformedFile(where, f"`{part}`: {names!r} is not allowed; a list of names is")
+    listed = tuple(names)
+    for name in listed:
+        if not isinstance(name, str):
+            raise MalformedFile(where, f"`{part}`: {name!r} is no name; a string is one")
+    return listed
+
+
+def _piles(part: str, piles: Any, where: str, *, letters: bool) -> dict[str, tuple[str, ...]]:
+    """Return piles as tuples; a text in place of a list is taken by its letters only where the blocks are known."""
+    if not isinstance(piles, Mapping):
+        raise MalformedFile(where, f"`{part}`: {piles!r} is not allowed; a mapping of locations to lists of blocks is")
+    for location, pile in piles.items():
+        if isinstance(pile, str) and not letters:
+            raise MalformedFile(where, f"`{part}.{location}`: {pile!r} is one name; a list of blocks is allowed")
+    _names(part, piles, where)
+    return {location: _names(f"{part}.{location}", pile, where) for location, pile in piles.items()}
+
+
+def _goal(goal: Any, where: str) -> Goal:
+    """Return the goal that is meant, its lists as tuples."""
+    match goal:
+        case StacksGoal(stacks):
+            return StacksGoal(_piles("goal.stacks", stacks, where, letters=True))
+        case PositionsGoal(positions):
+            return PositionsGoal({block: _position(block, at, where) for block, at in positions.items()})
+        case OnGoal(on, bottom):
+            return OnGoal(dict(on), tuple(bottom))
+        case Mapping():
+            return StacksGoal(_piles("goal", goal, where, letters=False))
+        case _:
+            allowed = "a mapping of locations to lists of blocks, a StacksGoal, a PositionsGoal or an OnGoal is one"
+            raise MalformedFile(where, f"`goal`: {goal!r} is no goal; {allowed}")
+
+
+def _position(block: str, position: Any, where: str) -> tuple[str, int]:
+    match position:
+        case (str(location), int(height)):
+            return location, height
+    raise MalformedFile(where, f"`goal.positions.{block}`: {position!r} is not allowed; (location, height) is")
+
+
+def _locations(goal: Goal) -> Iterable[str]:
+    """Return the locations that a goal names."""
+    match goal:
+        case StacksGoal(stacks):
+            return stacks
+        case PositionsGoal(positions):
+            return [location for location, _ in positions.values()]
+        case OnGoal():
+            return ()
+        case _:
+            no_goal(goal)
