@@ -25,7 +25,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from typing import Any
 
-    from smash.execution.episode import Episode
     from smash.experiments.comparison import compare
     from smash.experiments.executing import execute
     from smash.experiments.planning import plan
@@ -45,6 +44,7 @@ if TYPE_CHECKING:
     from smash.problem.sets.generators import generate
     from smash.problem.sets.suites import read_suite as suite
     from smash.problem.sets.suites import suite_names
+    from smash.records.episodes import Episode
 
     __version__: str
 
@@ -80,7 +80,7 @@ __all__ = [
 
 _HOMES = {
     "Carry": "smash.problem.actions.carry",
-    "Episode": "smash.execution.episode",
+    "Episode": "smash.records.episodes",
     "Instance": "smash.problem.model",
     "Lift": "smash.problem.actions.lift",
     "Pick": "smash.problem.model",

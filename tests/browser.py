@@ -52,7 +52,7 @@ class Browser:
     def __exit__(self, *_):
         self._session = None
         self.call("Browser.close")
-        self._process.wait(timeout=20)
+        self._process.wait(timeout=60)
         os.close(self._to)
         os.close(self._from)
         self._profile.cleanup()

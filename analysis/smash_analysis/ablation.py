@@ -7,13 +7,14 @@ from pathlib import Path
 
 import pandas as pd
 
+from smash.records.reading import finished_runs
 from smash_analysis import command
 from smash_analysis.charts.heatmaps import planner_figure
-from smash_analysis.records import read_records, runs_table
 from smash_analysis.statistics.conditions import conditions
 from smash_analysis.statistics.findings import findings
 from smash_analysis.tables.cells import matched_cells, variant_cells
 from smash_analysis.tables.readings import cutoff_check, readings
+from smash_analysis.tables.runs import runs_table
 from smash_analysis.tables.writing import ablation_table, markdown
 
 
@@ -21,9 +22,9 @@ def make(results: Path, out: Path) -> list[Path]:
     """Make every picture and table of the ablation from the records in `results`; return the files.
 
     Raises:
-        NoRecords: where there are none.
+        MalformedFile: where there are none, or they are damaged.
     """
-    records = read_records(results)
+    records = finished_runs(results)
     out.mkdir(parents=True, exist_ok=True)
     read = readings(records)
     cells, matched, check = variant_cells(read), matched_cells(read), cutoff_check(records)

@@ -1,4 +1,4 @@
-"""The command line that the modules of tables and figures share: `python -m analysis.NAME RESULTS [--out DIR]`."""
+"""The command line of the modules of tables and figures: `python -m smash_analysis.NAME RESULTS [--out DIR]`."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from smash_analysis.records import NoRecords
+from smash.problem.errors import SmashError
 
 
 def run(
@@ -22,14 +22,14 @@ def run(
         folder: where below RESULTS they go if nothing else is said.
         shown: the file of them that is printed too.
     """
-    parser = argparse.ArgumentParser(prog=f"python -m analysis.{name}", description=about)
+    parser = argparse.ArgumentParser(prog=f"python -m smash_analysis.{name}", description=about)
     parser.add_argument("results", type=Path, help="directory with the records (.jsonl)")
     parser.add_argument("--out", type=Path, help=f"default: {Path('RESULTS', folder)}")
     arguments = parser.parse_args()
     out = arguments.out or arguments.results / folder
     try:
         files = make(arguments.results, out)
-    except NoRecords as error:
+    except SmashError as error:
         sys.exit(f"analysis: {error}")
     if shown:
         print((out / shown).read_text(encoding="utf-8"))

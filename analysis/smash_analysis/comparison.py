@@ -8,32 +8,33 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
+from smash.records.reading import finished_runs
+from smash.records.runs import RunRecord
 from smash_analysis import command
 from smash_analysis.charts.curves import anytime_chart, coverage_chart
 from smash_analysis.metrics import PREFIX, metric_names
-from smash_analysis.records import read_records, runs_table
 from smash_analysis.statistics.conditions import conditions
+from smash_analysis.tables.runs import runs_table
 from smash_analysis.tables.writing import markdown, mean_std, median_iqr, share
 
 PROBLEM = ["instance_hash", "variant"]
 GROUP = ["suite", "blocks", "buffers", "variant"]
 
 
-def comparable(records: list[dict[str, Any]]) -> list[dict[str, Any]]:
+def comparable(records: list[RunRecord]) -> list[RunRecord]:
     """Return the runs at the largest budget of each planner and suite, real cut-offs left out."""
-    kept = [record for record in records if record["kind"] != "cutoff"]
+    kept = [record for record in records if record.kind != "cutoff"]
     largest: dict[tuple[str, str], float] = {}
     for record in kept:
-        who = (record["label"], record["suite"])
-        largest[who] = max(largest.get(who, 0.0), record["budget"])
-    return [record for record in kept if record["budget"] == largest[record["label"], record["suite"]]]
+        who = (record.label, record.suite)
+        largest[who] = max(largest.get(who, 0.0), record.budget)
+    return [record for record in kept if record.budget == largest[record.label, record.suite]]
 
 
-def optima(records: list[dict[str, Any]]) -> tuple[dict[tuple[str, str], int], list[str]]:
+def optima(records: list[RunRecord]) -> tuple[dict[tuple[str, str], int], list[str]]:
     """Return the proven optimal cost of each problem (instance hash, variant), and every contradiction in words.
 
     A contradiction: two planners prove different optima, or one has a legal plan below a proven optimum or bound.
@@ -41,36 +42,36 @@ def optima(records: list[dict[str, Any]]) -> tuple[dict[tuple[str, str], int], l
     proven: dict[tuple[str, str], int] = {}
     witness: dict[tuple[str, str], str] = {}
     wrong = []
-    accepted = [record for record in records if record["outcome"] != "refused"]
+    accepted = [record for record in records if record.outcome != "refused"]
     for record in accepted:
-        problem = (record["instance_hash"], record["variant"])
-        if record["status"] == "optimal" and record["cost"] is not None:
-            known = proven.setdefault(problem, record["cost"])
-            first = witness.setdefault(problem, record["label"])
-            if known != record["cost"]:
-                wrong.append(f"{_name(record)}: {first} proves {known}, {record['label']} proves {record['cost']}")
-                proven[problem] = min(known, record["cost"])
-    solved = {(r["instance_hash"], r["variant"]): r["label"] for r in accepted if r["cost"] is not None}
+        problem = (record.instance_hash, record.variant)
+        if record.status == "optimal" and record.cost is not None:
+            known = proven.setdefault(problem, record.cost)
+            first = witness.setdefault(problem, record.label)
+            if known != record.cost:
+                wrong.append(f"{_name(record)}: {first} proves {known}, {record.label} proves {record.cost}")
+                proven[problem] = min(known, record.cost)
+    solved = {(r.instance_hash, r.variant): r.label for r in accepted if r.cost is not None}
     bounds: dict[tuple[str, str], tuple[int, str]] = {}
     for record in accepted:
-        problem = (record["instance_hash"], record["variant"])
-        if record["lower_bound"] is not None:
-            bounds[problem] = max(bounds.get(problem, (0, "")), (record["lower_bound"], record["label"]))
+        problem = (record.instance_hash, record.variant)
+        if record.lower_bound is not None:
+            bounds[problem] = max(bounds.get(problem, (0, "")), (record.lower_bound, record.label))
     for record in accepted:
-        bound, who = bounds.get((record["instance_hash"], record["variant"]), (0, ""))
-        if record["cost"] is not None and record["cost"] < bound:
-            wrong.append(f"{_name(record)}: {who} proves at least {bound}, {record['label']} has {record['cost']}")
-        if record["status"] == "infeasible" and (record["instance_hash"], record["variant"]) in solved:
-            other = solved[record["instance_hash"], record["variant"]]
-            wrong.append(f"{_name(record)}: {record['label']} proves it infeasible, {other} has a plan")
+        bound, who = bounds.get((record.instance_hash, record.variant), (0, ""))
+        if record.cost is not None and record.cost < bound:
+            wrong.append(f"{_name(record)}: {who} proves at least {bound}, {record.label} has {record.cost}")
+        if record.status == "infeasible" and (record.instance_hash, record.variant) in solved:
+            other = solved[record.instance_hash, record.variant]
+            wrong.append(f"{_name(record)}: {record.label} proves it infeasible, {other} has a plan")
     return proven, sorted(set(wrong))
 
 
-def _name(record: dict[str, Any]) -> str:
-    return f"{record['instance']} B={record['buffers']} {record['variant']}"
+def _name(record: RunRecord) -> str:
+    return f"{record.instance} B={record.buffers} {record.variant}"
 
 
-def compared(records: list[dict[str, Any]]) -> pd.DataFrame:
+def compared(records: list[RunRecord]) -> pd.DataFrame:
     """Return one row a run with `gap` (cost over the proven optimum, a share; NaN where none is proven) and `common`.
 
     `common` holds where every planner that solved anything of this suite and variant solved this problem.
@@ -137,9 +138,9 @@ def make(results: Path, out: Path, keys: Collection[str] | None = None) -> list[
         keys: the runs that are meant (None: all); a directory may hold records of other comparisons too.
 
     Raises:
-        NoRecords: where there are none.
+        MalformedFile: where there are none, or they are damaged.
     """
-    records = comparable(read_records(results, keys))
+    records = comparable(finished_runs(results, keys))
     out.mkdir(parents=True, exist_ok=True)
     runs = compared(records)
     _, wrong = optima(records)

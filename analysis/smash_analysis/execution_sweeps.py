@@ -16,12 +16,13 @@ import pandas as pd
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from smash.problem.errors import SmashError
+from smash.records.files import TRIALS
+from smash.records.reading import finished
 from smash_analysis.execution_tables import WITHOUT, paired_table, read_episodes
-from smash_analysis.records import NoRecords, read_lines
 from smash_analysis.statistics.intervals import success_rate, wilson
 from smash_analysis.tables.writing import RATES, SPREADS, markdown, rate_cell
 
-TRIAL_FORMAT = "smash-topple-trial/1"
 DEFAULT = "default"
 SETTING = ["benchmark", "blocks", "label", "variant", "policy"]
 """What episodes have in common that are compared between scenes."""
@@ -83,22 +84,20 @@ def read_trials(directories: Sequence[Path]) -> pd.DataFrame:
     farthest (landing along the push) [m].
 
     Raises:
-        NoRecords: where there are none.
+        MalformedFile: where a directory has none, or they are damaged.
     """
     rows = []
     for directory in directories:
-        for trial in read_lines(directory / "trials.jsonl", TRIAL_FORMAT):
-            landings = trial["landings"]
-            graspable = bool(landings) and all(landing["graspable"] for landing in landings)
+        for trial in finished(directory, TRIALS):
             rows.append(
                 {
-                    **{name: trial[name] for name in ("scene", "height", "falling", "seed", "stands", "moved")},
-                    "success": trial["stands"] and graspable,
-                    "farthest": max((landing["along"] for landing in landings), default=float("nan")),
+                    **{
+                        name: getattr(trial, name) for name in ("scene", "height", "falling", "seed", "stands", "moved")
+                    },
+                    "success": trial.success,
+                    "farthest": max((landing.along for landing in trial.landings), default=float("nan")),
                 }
             )
-    if not rows:
-        raise NoRecords("no trial in " + ", ".join(map(str, directories)))
     return pd.DataFrame(rows)
 
 
@@ -147,7 +146,7 @@ def make(results: Path, maps: Sequence[Path], out: Path) -> list[Path]:
     """Write `sweeps.md`, and `sizes.png` where there are maps; return the files.
 
     Raises:
-        NoRecords: where there is nothing to report.
+        MalformedFile: where there is nothing to report.
     """
     episodes = read_episodes(results)
     episodes["scene"] = episodes["scene"].fillna(DEFAULT)
@@ -184,7 +183,7 @@ def main() -> None:
     arguments = parser.parse_args()
     try:
         files = make(arguments.results, arguments.maps, arguments.out or arguments.results / "tables")
-    except NoRecords as error:
+    except SmashError as error:
         sys.exit(f"analysis: {error}")
     print("\n".join(str(file) for file in files))
 

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
+from smash.records.episodes import EpisodeRecord
+from smash.records.files import EPISODES
+from smash.records.reading import finished
 from smash_analysis import command
-from smash_analysis.records import NoRecords, read_lines
 from smash_analysis.statistics.intervals import paired, success_rate
-from smash_analysis.tables.episodes import EPISODE_FORMAT, EPISODES, episodes_table
+from smash_analysis.tables.episodes import episodes_table
 from smash_analysis.tables.paper_tables import METRICS, PAPER, SIZES, Metric
 from smash_analysis.tables.writing import RATES, SPREADS, latex, markdown, mean_std, rate_cell, with_spread
 
@@ -31,15 +33,12 @@ def read_episodes(results: Path) -> pd.DataFrame:
     """Return `told_episodes` of `RESULTS/episodes.jsonl`.
 
     Raises:
-        NoRecords: where there are none.
+        MalformedFile: where there are none, or they are damaged.
     """
-    records = read_lines(results / EPISODES, EPISODE_FORMAT)
-    if not records:
-        raise NoRecords(f"{results / EPISODES}: no finished episode")
-    return told_episodes(records)
+    return told_episodes(finished(results, EPISODES))
 
 
-def told_episodes(records: list[dict[str, Any]]) -> pd.DataFrame:
+def told_episodes(records: Sequence[EpisodeRecord]) -> pd.DataFrame:
     """Return `episodes_table` with `benchmark` (single or multi), and a failure for every loss.
 
     An episode whose process ended without one has failure `crashed`, and the process's problem for a reason.
@@ -187,7 +186,7 @@ def make(results: Path, out: Path) -> list[Path]:
     """Write the tables as Markdown and LaTeX, and the episodes as CSV; return the files.
 
     Raises:
-        NoRecords: where there are no episodes.
+        MalformedFile: where there are no episodes, or they are damaged.
     """
     episodes = read_episodes(results)
     out.mkdir(parents=True, exist_ok=True)

@@ -11,8 +11,12 @@ from typing import Any
 
 import pandas as pd
 
-from smash_analysis.records import incumbents_table, read_lines, read_records, runs_table, steps_table
-from smash_analysis.tables.episodes import EPISODE_FORMAT, EPISODES, actions_table, episodes_table
+from smash.records.episodes import EpisodeRecord
+from smash.records.files import EPISODES
+from smash.records.reading import finished_runs, read
+from smash.records.runs import RunRecord
+from smash_analysis.tables.episodes import actions_table, episodes_table
+from smash_analysis.tables.runs import incumbents_table, runs_table, steps_table
 
 EXPORT_VERSION = "smash-tables/1"
 """Written into the metadata of every Parquet file; columns may be added within a version."""
@@ -34,7 +38,7 @@ TYPES = {
 """Types of the columns that may be empty, which would be guessed from what is there."""
 
 
-def tidy_runs(records: list[dict[str, Any]]) -> pd.DataFrame:
+def tidy_runs(records: list[RunRecord]) -> pd.DataFrame:
     """Return one row a run: plain fields as they are, small objects as `object_field` columns, the rest as JSON text.
 
     The columns are the same whatever the records hold.
@@ -47,31 +51,37 @@ def tidy_runs(records: list[dict[str, Any]]) -> pd.DataFrame:
     return table.astype(TYPES)
 
 
-def _flat(record: dict[str, Any]) -> dict[str, Any]:
+def _flat(record: RunRecord) -> dict[str, Any]:
     """Return the columns made of a record's nested fields."""
     columns: dict[str, Any] = {}
     for name, parts in FLATTENED.items():
-        inner = record[name] or {}
-        columns |= {f"{name}_{part}": inner.get(part) for part in parts}
-    before, after = record["load_average"]
+        inner = getattr(record, name)
+        columns |= {f"{name}_{part}": getattr(inner, part, None) for part in parts}
+    before, after = record.load_average
     columns |= {"load_before": before, "load_after": after}
-    return columns | {name: json.dumps(record[name]) for name in AS_JSON}
+    return columns | {name: json.dumps(getattr(record, name)) for name in AS_JSON}
+
+
+def _carried_out(results: Path) -> list[EpisodeRecord]:
+    reading = read(results, EPISODES, escaped=True)
+    reading.refuse_damage(but_last=True)
+    return reading.records
 
 
 def export(results: Path, out: Path) -> list[tuple[Path, int]]:
     """Write every table as .parquet and .csv to `out`; return (file, rows) of each.
 
     Raises:
-        NoRecords: where there are no records to be read.
+        MalformedFile: where there are no records to be read, or they are damaged.
         OSError: where a file cannot be written.
     """
     import pyarrow as pa
     from pyarrow import parquet
 
-    records = read_records(results)
+    records = finished_runs(results)
     tables = {"runs": tidy_runs(records), "incumbents": incumbents_table(records), "steps": steps_table(records)}
-    if (results / EPISODES).is_file():
-        carried_out = read_lines(results / EPISODES, EPISODE_FORMAT)
+    if EPISODES.path(results).is_file():
+        carried_out = _carried_out(results)
         tables |= {"episodes": episodes_table(carried_out), "actions": actions_table(carried_out)}
     out.mkdir(parents=True, exist_ok=True)
     files = []

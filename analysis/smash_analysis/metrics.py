@@ -6,18 +6,21 @@ Every metric becomes a column `metric.NAME` of the table of runs, so that compar
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from importlib.metadata import entry_points
 from typing import Any
 
 import pandas as pd
 
+from smash.records.runs import RunRecord
+
 GROUP = "smash.metrics"
 PREFIX = "metric."
 """Before the name of a metric in a table's columns: no field of a record is called so."""
 Metric = Callable[[dict[str, Any]], float | None]
-"""A function from a `smash-run/1` object to a number, or None where it has none; its docstring says what it is."""
+"""A function from a `smash-run/1` object, as plain JSON data (`record["actions"]`), to a number, or None where it has
+none; its docstring says what it is."""
 
 
 @cache
@@ -32,7 +35,7 @@ def metrics() -> dict[str, Metric]:
     return found
 
 
-def metric_columns(records: list[dict[str, Any]]) -> dict[str, list[float]]:
+def metric_columns(records: Sequence[RunRecord]) -> dict[str, list[float]]:
     """Return the values of every metric, one a record; NaN where it has none.
 
     A run on which a metric fails has none; the first failure of each is named on stderr.
@@ -40,12 +43,12 @@ def metric_columns(records: list[dict[str, Any]]) -> dict[str, list[float]]:
     return {PREFIX + name: _values(name, metric, records) for name, metric in metrics().items()}
 
 
-def _values(name: str, metric: Metric, records: list[dict[str, Any]]) -> list[float]:
+def _values(name: str, metric: Metric, records: Sequence[RunRecord]) -> list[float]:
     values = []
     failures: list[str] = []
     for record in records:
         try:
-            value = metric(record)
+            value = metric(record.document)
             values.append(float("nan") if value is None else float(value))
         except Exception as error:
             failures.append(f"{type(error).__name__}: {error}")

@@ -17,8 +17,9 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
+from smash.problem.errors import MalformedFile
+from smash.records.reading import NoRecords, finished_runs
 from smash_analysis.charts.heatmaps import planner_figure
-from smash_analysis.records import NoRecords, read_records
 from smash_analysis.scaling import scaling_chart
 from smash_analysis.tables.cells import matched_cells, variant_cells
 from smash_analysis.tables.readings import readings
@@ -39,7 +40,7 @@ Drawing = tuple[str, Callable[[], "Figure"]]
 def ablation(results: Path) -> Drawing:
     """Return the contracted gadget's heatmaps, cold, on the paper's multi-goal set."""
     label, suite = "smash-layered cold", "multi-9"
-    read = readings([r for r in read_records(results / "ablation") if (r["label"], r["suite"]) == (label, suite)])
+    read = readings([r for r in finished_runs(results / "ablation") if (r.label, r.suite) == (label, suite)])
     cells, matched = variant_cells(read), matched_cells(read)
     return data_hash(cells, matched), lambda: planner_figure(label, suite, cells, matched)
 
@@ -48,14 +49,14 @@ def scaling(results: Path) -> Drawing:
     """Return the curves of time to a proven optimum over blocks."""
     file = results / "scaling" / "scaling.csv"
     if not file.is_file():
-        raise NoRecords(f"{file} is not there")
+        raise NoRecords(str(file), "is not there")
     cells = pd.read_csv(file, dtype={"room": str})
     return data_hash(cells), scaling_chart(cells, "proof_seconds").figure
 
 
 DRAWN = {"docs/figures/ablation-layered-cold.png": ablation, "docs/figures/scaling-proofs.png": scaling}
 COPIED = {"docs/topple-map.png": "topple-map/map.png"}
-"""Pictures that a step has drawn itself."""
+"""Pictures that a stage has drawn itself."""
 
 
 def data_hash(*tables: pd.DataFrame) -> str:
@@ -81,7 +82,7 @@ def update(results: Path, root: Path) -> Iterator[tuple[str, str]]:
 def _draw(source: Callable[[Path], Drawing], results: Path, target: Path) -> str:
     try:
         known, draw = source(results)
-    except NoRecords as error:
+    except MalformedFile as error:
         return f"left: {error}"
     if target.is_file() and shown_hash(target) == known:
         return "current"

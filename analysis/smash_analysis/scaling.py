@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
+from smash.records.reading import finished_runs
+from smash.records.runs import RunRecord
 from smash_analysis import command
 from smash_analysis.charts.panels import Chart, Panel, curves
-from smash_analysis.records import read_records, runs_table
+from smash_analysis.tables.runs import runs_table
 from smash_analysis.tables.writing import markdown
 
 if TYPE_CHECKING:
@@ -24,7 +27,7 @@ GROUP = ["label", "variant", "room"]
 MEASURES = {"first_seconds": "first plan", "proof_seconds": "proven optimum"}
 
 
-def scaling_cells(records: list[dict[str, object]]) -> pd.DataFrame:
+def scaling_cells(records: Sequence[RunRecord]) -> pd.DataFrame:
     """Return one row per planner, variant, room and size: shares, medians of times, mean cost and gap.
 
     `room` is the number of buffers as it was chosen: 0, 12, or `blocks` (as many as blocks).
@@ -122,9 +125,9 @@ def make(results: Path, out: Path) -> list[Path]:
     """Write the table (CSV and Markdown) and the curves (PNG and PDF); return the files.
 
     Raises:
-        NoRecords: where there is nothing to read.
+        MalformedFile: where there is nothing to read.
     """
-    cells = scaling_cells(read_records(results))
+    cells = scaling_cells(finished_runs(results))
     out.mkdir(parents=True, exist_ok=True)
     files = [out / "scaling.csv", out / "scaling.md"]
     cells.to_csv(files[0], index=False)

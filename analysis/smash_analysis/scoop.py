@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from smash.records.reading import finished_runs
+from smash.records.runs import RunRecord
 from smash_analysis import command
 from smash_analysis.execution_tables import read_episodes
-from smash_analysis.records import NoRecords, read_lines
 from smash_analysis.statistics.intervals import bootstrap, bootstrap_ratio
 from smash_analysis.tables.writing import SPREADS, latex, markdown, with_spread
 
@@ -31,40 +32,42 @@ LEGEND = (
 )
 
 
-def scoop_table(runs: list[dict[str, Any]], episodes: pd.DataFrame) -> pd.DataFrame:
+def scoop_table(runs: list[RunRecord], episodes: pd.DataFrame) -> pd.DataFrame:
     """Return a row per instance, variant and policy of `smash`, with what other planners say of the same problem."""
     rows = []
     for run in runs:
-        if run["label"] != "smash" or run["variant"] not in NAMES or run["actions"] is None:
+        if run.label != "smash" or run.variant not in NAMES or run.actions is None or run.cost is None:
             continue
-        here = episodes[(episodes["instance"] == run["instance"]) & (episodes["label"] == "smash")]
-        policies = sorted(here.loc[here["variant"] == run["variant"], "policy"].unique())
+        here = episodes[(episodes["instance"] == run.instance) & (episodes["label"] == "smash")]
+        policies = sorted(here.loc[here["variant"] == run.variant, "policy"].unique())
         for policy in policies or ["–"]:
-            carried_out = _carried_out(here[here["policy"] == policy], run["variant"])
+            carried_out = _carried_out(here[here["policy"] == policy], run.variant)
             rows.append({**_planned(run, runs), "policy": policy, **carried_out})
     order = {name: index for index, name in enumerate(NAMES.values())}
     table = pd.DataFrame(rows)
     return table.sort_values(["instance", "plan"], key=lambda c: c.map(order) if c.name == "plan" else c, kind="stable")
 
 
-def _planned(run: dict[str, Any], runs: list[dict[str, Any]]) -> dict[str, Any]:
+def _planned(run: RunRecord, runs: list[RunRecord]) -> dict[str, Any]:
     """Return the columns of a plan."""
-    problem, unit = (run["instance"], run["variant"]), run["instance_document"]["costs"]["unit"]
-    others = [other for other in runs if other["label"] != "smash" and (other["instance"], other["variant"]) == problem]
+    assert run.actions is not None
+    assert run.cost is not None
+    problem, unit = (run.instance, run.variant), run.instance_document["costs"]["unit"]
+    others = [other for other in runs if other.label != "smash" and (other.instance, other.variant) == problem]
     return {
-        "instance": run["instance"],
-        "plan": NAMES[run["variant"]],
-        "actions": len(run["actions"]),
-        "kinds": _kinds(run["actions"]),
-        "cost": f"{run['cost']} {unit}" + (" (optimal)" if run["status"] == "optimal" else ""),
-        "others": "; ".join(f"{other['label']}: {_answer(other)}" for other in others) or "–",
-        "planning [s]": f"{run['wall_seconds']:.2f}",
-        "predicted [s]": f"{run['cost'] / 1000:.1f}" if unit == "ms" else "–",
+        "instance": run.instance,
+        "plan": NAMES[run.variant],
+        "actions": len(run.actions),
+        "kinds": _kinds(run.actions),
+        "cost": f"{run.cost} {unit}" + (" (optimal)" if run.status == "optimal" else ""),
+        "others": "; ".join(f"{other.label}: {_answer(other)}" for other in others) or "–",
+        "planning [s]": f"{run.wall_seconds:.2f}",
+        "predicted [s]": f"{run.cost / 1000:.1f}" if unit == "ms" else "–",
     }
 
 
-def _answer(run: dict[str, Any]) -> str:
-    return str(run["status"]) if run["cost"] is None else f"{run['cost']} {run['status']}"
+def _answer(run: RunRecord) -> str:
+    return str(run.status) if run.cost is None else f"{run.cost} {run.status}"
 
 
 def _carried_out(episodes: pd.DataFrame, variant: str) -> dict[str, str]:
@@ -106,12 +109,9 @@ def make(results: Path, out: Path) -> list[Path]:
     """Write the table as Markdown, LaTeX and CSV; return the files.
 
     Raises:
-        NoRecords: where there are no runs or no episodes.
+        MalformedFile: where there are no runs or no episodes, or they are damaged.
     """
-    runs = read_lines(results / "runs.jsonl", "smash-run/1")
-    if not runs:
-        raise NoRecords(f"{results / 'runs.jsonl'}: no finished run")
-    table = scoop_table(runs, read_episodes(results))
+    table = scoop_table(finished_runs(results), read_episodes(results))
     out.mkdir(parents=True, exist_ok=True)
     files = [out / "scoop.md", out / "scoop.tex", out / "scoop.csv"]
     files[0].write_text(f"# The scoop\n\n{LEGEND}\n\n{markdown(table)}", encoding="utf-8")

@@ -10,9 +10,9 @@ import re
 from dataclasses import dataclass
 from importlib.metadata import entry_points
 
-from smash.problem.actions.registry import is_plain
 from smash.problem.errors import SmashError, Unsupported
 from smash.problem.model import Instance, PlanOptions
+from smash.problem.problem import Problem
 from smash_baselines.domains import DOMAINS
 from smash_baselines.parts.domain import domain_name, domain_text
 from smash_baselines.parts.part import Part
@@ -87,7 +87,7 @@ ENCODINGS = {
 BY_DOMAIN = {encoding.domain: encoding for encoding in ENCODINGS.values()}
 TOPPLE_ENCODINGS = ("conditional", "chain")
 """The two ways of this package to tell a topple: one action with conditional effects, or a chain of STRIPS actions."""
-FAMILY = "chain"
+COMPOSED = "chain"
 """The way in which further aggregating actions and costs can be told."""
 
 
@@ -131,25 +131,27 @@ def family_encoding(instance: Instance, options: PlanOptions) -> Encoding:
     return Encoding(name.removeprefix("smash-"), name, domain_text(texts), parts=parts)
 
 
-def unsupported_reason(instance: Instance, options: PlanOptions, wanted: str) -> str | None:
+def unsupported_reason(problem: Problem, wanted: str) -> str | None:
     """Return why the encoding `wanted` (`conditional`, `chain`, …) cannot say this problem, or None.
 
     Raises:
         UnknownEncoding: where none is called so.
     """
-    cap = cap_of(instance, options)
-    if not is_plain(instance, options):
+    cap = cap_of(problem.instance, problem.options)
+    if not problem.plain:
         get_encoding(wanted)
         return (
-            None if wanted == FAMILY else f"the {wanted} encoding knows topple alone, at cost 1; use the chain encoding"
+            None
+            if wanted == COMPOSED
+            else f"the {wanted} encoding knows topple alone, at cost 1; use the chain encoding"
         )
     if cap is not None and get_encoding(wanted).with_cap is None:
         return f"the {wanted} encoding cannot count the blocks of a topple (max_topple {cap}); use the chain encoding"
     return None
 
 
-def encoding_for(instance: Instance, options: PlanOptions, wanted: str) -> Encoding:
-    """Return the encoding of a problem under `options`, topples told in the way `wanted`.
+def encoding_for(problem: Problem, wanted: str) -> Encoding:
+    """Return the encoding of a problem, topples told in the way `wanted`.
 
     Without topple all ways are the same pick-and-place domain.
 
@@ -157,11 +159,12 @@ def encoding_for(instance: Instance, options: PlanOptions, wanted: str) -> Encod
         UnknownEncoding: where none is called so.
         Unsupported: where `wanted` cannot say it.
     """
-    reason = unsupported_reason(instance, options, wanted)
+    instance, options = problem.instance, problem.options
+    reason = unsupported_reason(problem, wanted)
     if reason is not None:
         raise Unsupported(reason)
     encoding = get_encoding(wanted)
-    if not is_plain(instance, options):
+    if not problem.plain:
         return family_encoding(instance, options)
     if not options.topple:
         return PICK_AND_PLACE

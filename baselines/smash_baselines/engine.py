@@ -6,17 +6,16 @@ import tempfile
 from abc import abstractmethod
 from collections.abc import Iterable
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic
 from typing import Any, ClassVar, Self
 
-from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
-from smash.problem.actions.registry import is_plain
+from smash.planners.protocol import OnIncumbent, ProblemPlanner, Settings, SolveLog
 from smash.problem.errors import IllegalAction, PlannerCrashed, PlannerOutOfMemory, Unsupported
-from smash.problem.model import Instance, State
-from smash.problem.rules import Law
-from smash_baselines.encodings import FAMILY, UnknownEncoding, encoding_names, get_encoding, unsupported_reason
+from smash.problem.plan import Plan
+from smash.problem.problem import Problem
+from smash_baselines.encodings import COMPOSED, UnknownEncoding, encoding_names, get_encoding, unsupported_reason
 from smash_baselines.engines.outcomes import Outcome
 from smash_baselines.engines.process import MEMORY_LIMIT
 from smash_baselines.facts import named_blocks, trim_buffers
@@ -31,13 +30,17 @@ class Run:
     """One run of an engine on one task: its limits, the plans that it reports, what it measures."""
 
     task: PddlTask
-    log: IncumbentLog
+    log: SolveLog
     origin: str
     directory: Path
     deadline: float
     memory: int
     infeasible: bool = False
-    details: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def details(self) -> dict[str, Any]:
+        """What only this engine measures."""
+        return self.log.details
 
     def offer(self, steps: Iterable[Step]) -> None:
         """Take a plan of the engine; one that does not fit the encoding or the law is recorded as refused."""
@@ -51,7 +54,7 @@ class Run:
         self.log.prove(bound, self.origin)
 
 
-class EnginePlanner(BasePlanner):
+class EnginePlanner(ProblemPlanner):
     """A planner that hands the compiled problem to an engine outside of this process."""
 
     name: str
@@ -71,19 +74,19 @@ class EnginePlanner(BasePlanner):
         """
         self.memory = memory
 
-    def unsupported(self, instance: Instance, options: SolveOptions) -> str | None:
+    def refuses(self, problem: Problem, settings: Settings) -> str | None:
         """Return why the encoding cannot say the problem, or None."""
-        encoding = self.encoding_of(instance, options)
-        reason = unsupported_reason(instance, options, encoding)
-        if reason is not None or not options.topple or self.takes_conditional_effects():
+        encoding = self.encoding_of(problem)
+        reason = unsupported_reason(problem, encoding)
+        if reason is not None or not problem.options.topple or self.takes_conditional_effects():
             return reason
         if get_encoding(encoding).conditional_effects:
             return f"it takes no conditional effects, which the {encoding} encoding has; use the chain encoding"
         return None
 
-    def encoding_of(self, instance: Instance, options: SolveOptions) -> str:
+    def encoding_of(self, problem: Problem) -> str:
         """Return how this problem is told to it."""
-        return self.encoding if not self.falls_back or is_plain(instance, options) else FAMILY
+        return self.encoding if not self.falls_back or problem.plain else COMPOSED
 
     def with_encoding(self, encoding: str) -> Self:
         """Return the same planner on another encoding: what `NAME:ENCODING` means.
@@ -102,39 +105,43 @@ class EnginePlanner(BasePlanner):
         """Return whether it takes encodings with conditional effects."""
         return True
 
-    def solve(
-        self,
-        instance: Instance,
-        options: SolveOptions,
-        budget: float,
-        on_incumbent: OnIncumbent | None = None,
-    ) -> PlanResult:
+    def plan(
+        self, problem: Problem, settings: Settings, budget: float, on_incumbent: OnIncumbent | None = None
+    ) -> Plan:
         """Plan for at most `budget` seconds, compilation and the engine's translation included.
+
+        Args:
+            problem: what to plan.
+            settings: nothing of them means anything to an engine.
+            budget: seconds of wall time.
+            on_incumbent: called with every better plan.
 
         Raises:
             Unsupported: where the encoding or the engine cannot take the problem.
             PlannerCrashed: where the engine ends abnormally or at its memory limit without a plan.
         """
         deadline = monotonic() + budget
-        log = IncumbentLog(instance, options, on_incumbent)
-        if Law(instance, options).goal_shortfall(State.start_of(instance)) is None:
+        log = SolveLog(problem, on_incumbent)
+        if problem.solved:
             log.offer((), "start")
             log.prove(0, "start")
-            return log.result()
-        encoding, picked = self.encoding_of(instance, options), named_blocks(instance)
-        task = compile_instance(trim_buffers(instance), options, encoding, picked)
+            return log.plan()
+        instance = problem.instance
+        task = compile_instance(
+            trim_buffers(instance), problem.options, self.encoding_of(problem), named_blocks(instance)
+        )
         with tempfile.TemporaryDirectory(prefix="smash-", ignore_cleanup_errors=True) as folder:
             run = Run(task, log, self.name, Path(folder), deadline, self.memory)
             run.details["encoding"] = task.encoding.name
             run.details["compile_seconds"] = round(log.elapsed, 4)
             outcome = self.run(run)
-        return self._result(run, outcome)
+        return self._answer(run, outcome)
 
     @abstractmethod
     def run(self, run: Run) -> Outcome:
         """Run the engine: offer its plans and bounds to `run` as they come, and say how it ended."""
 
-    def _result(self, run: Run, outcome: Outcome) -> PlanResult:
+    def _answer(self, run: Run, outcome: Outcome) -> Plan:
         run.details["outcome"] = outcome.text
         if run.log.refusals:
             run.details["refused"] = list(run.log.refusals)
@@ -144,11 +151,9 @@ class EnginePlanner(BasePlanner):
             raise PlannerCrashed(f"{self.name}: {outcome.text}{_last_words(run)}")
         if run.log.best is None and outcome.kind == "unsupported":
             raise Unsupported(f"{self.name}: {outcome.text}")
-        return run.log.result(
-            infeasible=run.infeasible,
-            bound_origin=self.name,
-            details=run.details,
-        )
+        if run.infeasible:
+            run.log.refute(self.name)
+        return run.log.plan()
 
 
 def _last_words(run: Run) -> str:

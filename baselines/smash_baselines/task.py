@@ -9,6 +9,7 @@ from pathlib import Path
 
 from smash.problem.files.documents import write_text
 from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal
+from smash.problem.problem import Problem
 from smash_baselines.encodings import Encoding, encoding_for
 from smash_baselines.facts import Facts, facts_of
 from smash_baselines.names import Fact, Names
@@ -75,7 +76,7 @@ def compile_instance(
         UnknownEncoding: where no encoding is called so.
         Unsupported: where that encoding cannot say the problem.
     """
-    encoding = encoding_for(instance, options, wanted)
+    encoding = encoding_for(Problem(instance, options), wanted)
     names = Names.of(instance)
     return PddlTask(instance, options, encoding, names, facts_of(instance, options, encoding, names, picked))
 

@@ -24,10 +24,12 @@ from unified_planning.engines.results import (
 )
 from unified_planning.model import AbstractProblem, Problem, ProblemKind
 
-from smash.planners.protocol import OnIncumbent, PlanResult, SolveOptions, why_unsupported
+from smash.planners.protocol import OnIncumbent, Settings, ask, why_unsupported
 from smash.planners.registry import DEFAULT, get_planner
 from smash.problem.errors import MalformedFile, SmashError, Unsupported
 from smash.problem.model import Action
+from smash.problem.plan import Plan
+from smash.problem.problem import Problem as SmashProblem
 from smash_baselines.read_problem import ReadProblem
 from smash_baselines.read_up import read_up_problem
 from smash_baselines.steps import steps_of
@@ -125,12 +127,12 @@ class SmashEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin):  # type: ig
         except (Unsupported, MalformedFile) as error:
             yield self._failed(PlanGenerationResultStatus.UNSUPPORTED_PROBLEM, error)
             return
-        heard: SimpleQueue[Sequence[Action] | PlanResult | Exception] = SimpleQueue()
+        heard: SimpleQueue[Sequence[Action] | Plan | Exception] = SimpleQueue()
         budget = DEFAULT_BUDGET if timeout is None else timeout
         threading.Thread(target=self._run, args=(read, budget, heard), daemon=True).start()
         while True:
             news = heard.get()
-            if isinstance(news, PlanResult):
+            if isinstance(news, Plan):
                 yield self._final(news, read, problem)
                 return
             if isinstance(news, Exception):
@@ -139,14 +141,14 @@ class SmashEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin):  # type: ig
             yield self._intermediate(news, read, problem)
 
     def _run(self, read: ReadProblem, budget: float, heard: SimpleQueue[Any]) -> None:
-        options = SolveOptions(read.options.topple, read.options.max_topple)
+        asked, settings = SmashProblem(read.instance, read.options), Settings()
         report: OnIncumbent = lambda _seconds, _cost, actions: heard.put(tuple(actions))  # noqa: E731
         try:
             planner = get_planner(self._planner)
-            reason = why_unsupported(planner, read.instance, options)
+            reason = why_unsupported(planner, asked, settings)
             if reason:
                 raise Unsupported(reason)
-            heard.put(planner.solve(read.instance, options, budget, report))
+            heard.put(ask(planner, asked, settings, budget, report, name=self._planner))
         except Exception as error:  # whatever ends the thread must reach the caller, who waits for it
             heard.put(error)
 
@@ -154,7 +156,7 @@ class SmashEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin):  # type: ig
         plan = up_plan(steps_of(actions, read.task), problem)
         return PlanGenerationResult(PlanGenerationResultStatus.INTERMEDIATE, plan, self.name)
 
-    def _final(self, result: PlanResult, read: ReadProblem, problem: Problem) -> PlanGenerationResult:
+    def _final(self, result: Plan, read: ReadProblem, problem: Problem) -> PlanGenerationResult:
         plan = None if result.actions is None else up_plan(steps_of(result.actions, read.task), problem)
         metrics = {"planner": self._planner}
         if result.lower_bound is not None:

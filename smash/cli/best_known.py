@@ -46,17 +46,20 @@ def update(results: tuple[Path, ...], directory: Path | None) -> None:
     Example:
       smash best-known update runs/open
     """
-    from smash.experiments.best_known.best_known import BestKnown
     from smash.experiments.best_known.files import FILE, list_to_write, read_best_known, write_best_known
-    from smash.experiments.sweeps.records import RUNS, read_records
+    from smash.experiments.best_known.standing import BestKnown
+    from smash.records.files import RUNS
+    from smash.records.reading import read
 
     directory = list_to_write(directory)
     known = read_best_known(directory) if (directory / FILE).is_file() else BestKnown(directory)
     improved = others = 0
     for folder in results:
-        if not (folder / RUNS).is_file():
-            raise MalformedFile(str(folder), f"no {RUNS} there: not what a sweep writes")
-        for record in read_records(folder / RUNS):
+        if not RUNS.path(folder).is_file():
+            raise MalformedFile(str(folder), f"no {RUNS.name} there: not what a sweep writes")
+        reading = read(folder, RUNS)
+        reading.refuse_damage()
+        for record in reading.records:
             entries = known.offer_record(record)
             others += entries is None
             improved += len(entries or [])
@@ -80,8 +83,8 @@ def add(plan: Path, by: str, certificate: Path | None, directory: Path | None) -
     Example:
       smash best-known add mine.json --by "A. Researcher, my-planner 1.2"
     """
-    from smash.experiments.best_known.best_known import Found
     from smash.experiments.best_known.files import list_to_write, read_best_known, write_best_known
+    from smash.experiments.best_known.standing import Found
     from smash.experiments.best_known.submission import accept
     from smash.problem.certificate import read_certificate
 

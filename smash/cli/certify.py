@@ -10,10 +10,10 @@ import click
 from smash.cli import fail
 from smash.cli.choices import SECONDS
 from smash.problem.certificate import certificate_text
-from smash.problem.feasibility import why_infeasible
 from smash.problem.files.documents import write_text
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import read_plan
+from smash.problem.problem import Problem
 
 
 @click.command("certify")
@@ -45,10 +45,10 @@ def command(instance: Path, plan: Path, budget: float, out: Path) -> None:
     problem, filed = read_instance(instance), read_plan(plan)
     if filed.instance != problem.name:
         fail(f"{plan}: the plan is for instance {filed.instance!r}, not {problem.name!r}", 3)
-    reason = why_infeasible(problem, filed.options)
-    if reason is not None:
-        fail(f"{instance}: proven infeasible: {reason}", 3)
-    certificate = certify(problem, filed.options, perf_counter() + budget)
+    asked = Problem(problem, filed.options)
+    if asked.infeasible is not None:
+        fail(f"{instance}: proven infeasible: {asked.infeasible}", 3)
+    certificate = certify(asked, perf_counter() + budget)
     write_text(out, certificate_text(certificate))
     note = f" ({certificate.note})" if certificate.note else ""
     click.echo(f"{len(certificate.cycles)} cycles prove that every plan has at least {certificate.bound} actions{note}")

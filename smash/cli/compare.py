@@ -81,7 +81,7 @@ def command(
 
 def _show(comparison: Any, out: Path, keys: set[str]) -> None:
     """Print the table, its settings as headings, and how the runs ended."""
-    runs = comparison.compared(comparison.comparable(comparison.read_records(out, keys)))
+    runs = comparison.compared(comparison.comparable(comparison.finished_runs(out, keys)))
     table = comparison.comparison_table(runs)
     for setting, part in table.groupby(comparison.GROUP, sort=True):
         suite, blocks, count, variant = setting

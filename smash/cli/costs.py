@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
+from smash.problem.extras import require
 from smash.problem.files.instances import instance_from_document, read_instance, write_instance
 
 
@@ -27,21 +28,25 @@ def command(results: Path, instance: Path, scene: Path | None, out: Path | None)
       smash costs runs/scoop examples/scoop-seconds.json --scene examples/scoop-scene.toml
       smash costs runs/tables my.json --out my-in-milliseconds.json
     """
+    require("smash costs", "pinocchio", "coal", "toppra", "scipy")
     from smash.execution.layout.unrolled import unrolled_positions
     from smash.execution.scene.scene_file import default_scene, read_scene
-    from smash.experiments.episodes.episodes import EPISODE_RUN_FORMAT, EPISODES
     from smash.experiments.studies.durations import Duration, durations, fit
-    from smash.experiments.sweeps.records import RUNS, read_records
+    from smash.records.files import EPISODES, RUNS
+    from smash.records.reading import read
 
     problem = read_instance(instance)
     tabletop = default_scene() if scene is None else read_scene(scene)
     positions = unrolled_positions(tabletop, problem)
-    filed = {record["key"]: record["instance_document"] for record in read_records(results / RUNS)}
+    runs, episodes = read(results, RUNS), read(results, EPISODES)
+    runs.refuse_damage()
+    episodes.refuse_damage()
+    filed = {run.key: run.instance_document for run in runs.records}
     measured: list[Duration] = []
-    for record in read_records(results / EPISODES, EPISODE_RUN_FORMAT):
-        if record["episode"] is not None:
-            done = instance_from_document(filed[record["run"]])
-            measured += durations(record["episode"], done, unrolled_positions(tabletop, done))
+    for record in episodes.records:
+        if record.episode is not None:
+            done = instance_from_document(filed[record.run])
+            measured += durations(record.episode.actions, done, unrolled_positions(tabletop, done))
     if not measured:
         fail(f"{results}: no action was carried out", 2)
     fitted = fit(measured)

@@ -3,25 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import click
 
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.episodes.asked import note_asked
-from smash.experiments.episodes.episodes import (
-    EPISODE_RUN_FORMAT,
-    EPISODES,
-    POLICIES,
-    REPLAYS,
-    EpisodeRun,
-    episode_runs,
-    run_all,
-)
+from smash.experiments.episodes.series import POLICIES, REPLAYS, EpisodeRun, episode_runs, run_all
 from smash.experiments.sweeps.display import span
-from smash.experiments.sweeps.records import Records
 from smash.problem.errors import Interrupted
 from smash.problem.extras import EXECUTION, require
+from smash.records.episodes import EpisodeRecord
+from smash.records.files import EPISODES
+from smash.records.writing import Writer
 
 SECONDS_AN_EPISODE = 5.0
 """Wall time of a typical episode on one core, for the estimate [s]."""
@@ -72,7 +65,7 @@ def command(
     runs = episode_runs(results, range(seeds), policies, file, labels, replays)
     if replays:
         (results / REPLAYS).mkdir(exist_ok=True)
-    with stopped_by_signals() as stop, Records(results, EPISODES, EPISODE_RUN_FORMAT) as records:
+    with stopped_by_signals() as stop, Writer(results, EPISODES) as records:
         left = sum(run.key not in records.finished for run in runs)
         about = span(left * SECONDS_AN_EPISODE / jobs)
         if records.set_aside:
@@ -87,15 +80,19 @@ def command(
         note_asked(results, seeds, policies, scene, labels)
         done = 0
 
-        def ended(run: EpisodeRun, record: dict[str, Any]) -> None:
+        def ended(run: EpisodeRun, record: EpisodeRecord) -> None:
             nonlocal done
             done += 1
-            episode = record["episode"]
-            failure = record["problem"] if episode is None else (episode["failure"] or {}).get("reason", "success")
-            words = f"{run.record['instance']} {run.record['label']} {run.record['variant']} {run.policy} {run.seed}"
-            click.echo(f"[{done}/{left}] {words}: {failure}", err=True)
+            words = f"{record.instance} {record.label} {record.variant} {record.policy} {record.seed}"
+            click.echo(f"[{done}/{left}] {words}: {_end(record)}", err=True)
 
         run_all(runs, records, jobs, stop, ended)
         if stop.is_set():
             raise Interrupted("interrupted; every finished episode is recorded, start again to do the rest")
-    click.echo(f"{len(runs)} episodes recorded in {results / EPISODES}")
+    click.echo(f"{len(runs)} episodes recorded in {records.path}")
+
+
+def _end(record: EpisodeRecord) -> str:
+    if record.episode is None:
+        return record.problem
+    return "success" if record.episode.failure is None else record.episode.failure.reason

@@ -70,8 +70,8 @@ def command(
     if replanner is not None:
         _require_planner(replanner, no_replan)
     problem, filed = read_instance(instance), read_plan(plan)
-    from smash.execution.episode import Performed, episode_text
     from smash.execution.viewing.capture import Capture
+    from smash.records.episodes import Performed, episode_text
 
     capture = Capture(replay=replay, video=video, stills=stills, trajectory=trajectory)
     from rich.console import Console

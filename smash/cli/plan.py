@@ -16,12 +16,13 @@ from smash.cli.signals import stopped_by_signals
 from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import DEFAULT_MEMORY, Job, Report
 from smash.experiments.planning import failure
-from smash.planners.protocol import MOST_THREADS, OnIncumbent, SolveOptions
+from smash.planners.protocol import MOST_THREADS, OnIncumbent, Settings
 from smash.planners.registry import DEFAULT
 from smash.problem.files.documents import require_writable, write_text
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import plan_text
-from smash.problem.model import Action
+from smash.problem.model import Action, PlanOptions
+from smash.problem.problem import Problem
 
 
 @click.command("plan")
@@ -84,8 +85,8 @@ def command(
     if estimates is not None:
         max_topple = _trusted(estimates, max_topple)
         no_topple = no_topple or max_topple == 0
-    options = SolveOptions(not no_topple, max_topple or None, warm_start, horizon, threads, seed, without=without)
-    job = Job(planner, read_instance(instance), options, budget, memory)
+    problem = Problem(read_instance(instance), PlanOptions(not no_topple, max_topple or None, without=without))
+    job = Job(planner, problem, Settings(warm_start, horizon, threads, seed), budget, memory)
     if math.isnan(budget):
         raise click.BadParameter("nan is no number of seconds", param_hint="--budget")
     require_writable(out)

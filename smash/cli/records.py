@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from smash.problem.errors import MalformedFile, SmashError
+from smash.problem.errors import MalformedFile
 from smash.problem.extras import TABLES, require
 
 if TYPE_CHECKING:
@@ -113,11 +113,6 @@ def export(results: Path, out: Path) -> None:
     """
     require("smash records export", *TABLES, "pyarrow")
     from smash_analysis import export as tables
-    from smash_analysis.records import NoRecords
 
-    try:
-        files = tables.export(results, out)
-    except NoRecords as error:
-        raise SmashError(str(error)) from None
-    for file, rows in files:
+    for file, rows in tables.export(results, out):
         click.echo(f"{file}: {rows} rows")

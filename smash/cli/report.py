@@ -6,7 +6,6 @@ from pathlib import Path
 
 import click
 
-from smash.problem.errors import SmashError
 from smash.problem.extras import TABLES, require
 
 
@@ -25,11 +24,7 @@ def command(results: Path, out: Path | None) -> None:
       smash report results --out report
     """
     require("smash report", *TABLES)
-    from smash_analysis.records import NoRecords
     from smash_analysis.report import page
 
-    try:
-        made = page.make(results, out or results / "report", lambda line: click.echo(line, err=True))
-    except NoRecords as error:
-        raise SmashError(str(error)) from None
+    made = page.make(results, out or results / "report", lambda line: click.echo(line, err=True))
     click.echo(f"{made} ({made.stat().st_size / 1e6:.1f} MB), parts in {made.parent / 'parts'}")

@@ -14,8 +14,8 @@ import click
 import smash
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.reproduction.manifest import write_manifest
-from smash.experiments.reproduction.reproduce import Planned, Record, Reproduction, last_line
-from smash.experiments.reproduction.stages import read_steps
+from smash.experiments.reproduction.reproduce import Planned, Reproduction, StageRecord, last_line
+from smash.experiments.reproduction.stages import read_stages
 from smash.experiments.sweeps.display import span
 from smash.problem.errors import Interrupted, MalformedFile, SmashError
 from smash.records.locking import hold
@@ -23,10 +23,10 @@ from smash.records.locking import hold
 EXPERIMENTS = Path(smash.__file__).parent.parent / "experiments"
 LEFT = ("to do", "continued", "stale")
 SECONDS_BETWEEN_LINES = 30.0
-"""How often a line says how a step goes where no terminal shows it."""
+"""How often a line says how a stage goes where no terminal shows it."""
 
 
-class _StepFailed(SmashError):
+class _StageFailed(SmashError):
     def __init__(self, message: str, exit_code: int) -> None:
         self.exit_code = exit_code if exit_code > 0 else 7
         super().__init__(message)
@@ -34,7 +34,9 @@ class _StepFailed(SmashError):
 
 @click.command("reproduce")
 @click.option("--full", is_flag=True, help="The whole grids instead of the stated small ones (days; says how long).")
-@click.option("--steps", type=click.Path(path_type=Path, dir_okay=False), metavar="FILE", help="Another list of steps.")
+@click.option(
+    "--steps", type=click.Path(path_type=Path, dir_okay=False), metavar="FILE", help="Another list of stages."
+)
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Default: runs/NAME-OF-THE-LIST.")
 @click.option("--dry-run", is_flag=True, help="Say what would be run, what is done, and how long it takes.")
 @click.option("--keep-stale", is_flag=True, help="Keep what is done though code or inputs have changed (it is noted).")
@@ -42,7 +44,7 @@ class _StepFailed(SmashError):
 def command(
     full: bool, steps: Path | None, out: Path | None, dry_run: bool, keep_stale: bool, copy_to: Path | None
 ) -> None:
-    """Make the paper's tables and figures, and those of this testbed, step by step, and write a manifest.
+    """Make the paper's tables and figures, and those of this testbed, stage by stage, and write a manifest.
 
     It may be stopped or killed at any moment: start it again and it goes on. What is done and unchanged is not run
     again. OUT/MANIFEST.md says what was run, what was not and why, how long it took, and the hash of each product.
@@ -56,7 +58,7 @@ def command(
     file = steps or EXPERIMENTS / f"reproduce{'-full' if full else ''}.toml"
     if steps is None and not file.is_file():
         raise MalformedFile(str(file), "not there: run it in a checkout of the repository, or give --steps FILE")
-    read = read_steps(file)
+    read = read_stages(file)
     reproduction = Reproduction(read, file.parent, out or Path("runs") / read.name, keep_stale)
     if dry_run:
         _show(reproduction, reproduction.plan())
@@ -85,18 +87,18 @@ def _show(reproduction: Reproduction, planned: Sequence[Planned]) -> None:
     if not console.is_terminal:
         console.width = 120
     left = [entry for entry in planned if entry.plan in LEFT]
-    total = span(60 * sum(entry.step.minutes for entry in left))
-    words = f"{len(left)} of {len(planned)} steps to do, about {total} on 2 cores" if left else "nothing to do"
-    click.echo(f"{reproduction.steps.name} in {reproduction.out}: {words}")
-    table = Table("step", "what", "about", "plan", "why")
+    total = span(60 * sum(entry.stage.minutes for entry in left))
+    words = f"{len(left)} of {len(planned)} stages to do, about {total} on 2 cores" if left else "nothing to do"
+    click.echo(f"{reproduction.stages.name} in {reproduction.out}: {words}")
+    table = Table("stage", "what", "about", "plan", "why")
     for entry in planned:
-        took = span(60 * entry.step.minutes)
-        table.add_row(*(Text(cell) for cell in (entry.step.name, entry.step.about, took, entry.plan, entry.why)))
+        took = span(60 * entry.stage.minutes)
+        table.add_row(*(Text(cell) for cell in (entry.stage.name, entry.stage.about, took, entry.plan, entry.why)))
     console.print(table)
 
 
 class _Progress:
-    """Says on stderr which step runs, since when, and the last line that it printed."""
+    """Says on stderr which stage runs, since when, and the last line that it printed."""
 
     def __init__(self, total: int) -> None:
         self._total, self._number = total, 0
@@ -119,14 +121,14 @@ class _Progress:
             self._status.stop()
 
     def begun(self, planned: Planned, log: Path) -> None:
-        """Say that a step has started."""
+        """Say that a stage has started."""
         self._number += 1
         self._log, self._said = log, monotonic()
-        self._words = f"[{self._number}/{self._total}] {planned.step.name}"
-        self._say(f"{self._words}: about {span(60 * planned.step.minutes)}; its output: {log}")
+        self._words = f"[{self._number}/{self._total}] {planned.stage.name}"
+        self._say(f"{self._words}: about {span(60 * planned.stage.minutes)}; its output: {log}")
 
     def running(self, seconds: float) -> None:
-        """Show the last line that the step has printed."""
+        """Show the last line that the stage has printed."""
         if self._status is not None:
             from rich.text import Text
 
@@ -135,8 +137,8 @@ class _Progress:
             self._said = monotonic()
             self._say(f"{self._words}, {span(seconds)}: {last_line(self._log)}")
 
-    def ended(self, record: Record) -> None:
-        """Say how a step ended."""
+    def ended(self, record: StageRecord) -> None:
+        """Say how a stage ended."""
         words = record.problem or f"{len(record.products)} products"
         self._say(f"{self._words}: {record.state}, {span(record.seconds)}: {words}")
 
@@ -158,17 +160,17 @@ def _copy(reproduction: Reproduction, planned: Sequence[Planned], files: Sequenc
 
 
 def _small(entry: Planned) -> list[str]:
-    """Return the products of a step but for those that a reference set does without."""
+    """Return the products of a stage but for those that a reference set does without."""
     names = entry.record.products if entry.record is not None else {}
-    return [name for name in names if not any(fnmatch(name, pattern) for pattern in entry.step.not_copied)]
+    return [name for name in names if not any(fnmatch(name, pattern) for pattern in entry.stage.not_copied)]
 
 
 def _end(planned: Sequence[Planned], files: Sequence[Path]) -> None:
     click.echo("\n".join(str(file) for file in files))
     for entry in planned:
         if entry.plan == "not run":
-            click.echo(f"{entry.step.name} was not run: {entry.why}", err=True)
+            click.echo(f"{entry.stage.name} was not run: {entry.why}", err=True)
     failed = [entry.record for entry in planned if entry.record is not None and entry.record.state == "failed"]
     if failed:
         others = f" (and {len(failed) - 1} more)" if len(failed) > 1 else ""
-        raise _StepFailed(f"step {failed[0].step}{others}: {failed[0].problem}", failed[0].exit_code)
+        raise _StageFailed(f"stage {failed[0].stage}{others}: {failed[0].problem}", failed[0].exit_code)

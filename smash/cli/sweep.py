@@ -17,9 +17,11 @@ from smash.experiments.sweeps.cluster import slurm_script as batch_script
 from smash.experiments.sweeps.display import Progress
 from smash.experiments.sweeps.experiment import Experiment, Run, experiment_runs, not_installed, read_experiment
 from smash.experiments.sweeps.keep import keep
-from smash.experiments.sweeps.records import Records
 from smash.experiments.sweeps.sweep import execute, local_task, sweep
 from smash.problem.files.documents import write_text
+from smash.records.files import RUNS
+from smash.records.runs import RunRecord
+from smash.records.writing import Writer
 
 
 @click.command("sweep")
@@ -86,21 +88,21 @@ def run_all(runs: list[Run], out: Path, jobs: int, dask: str | None, keep: Calla
     Raises:
         SmashError: where the directory is in use or damaged, the scheduler cannot be reached, or it was interrupted.
     """
-    with stopped_by_signals() as stop, Records(out) as records:
+    with stopped_by_signals() as stop, Writer(out, RUNS) as records:
         keep()
         kept = sum(run.key in records.finished for run in runs)
         _say_state(records, runs, kept)
         if kept < len(runs):
             _sweep(runs, records, kept, jobs, dask, stop)
-    click.echo(f"{len(runs)} runs recorded in {out / 'runs.jsonl'}")
+    click.echo(f"{len(runs)} runs recorded in {records.path}")
 
 
-def _say_state(records: Records, runs: list[Run], kept: int) -> None:
+def _say_state(records: Writer[RunRecord], runs: list[Run], kept: int) -> None:
     if records.set_aside:
         click.echo(f"the last line of {records.path} was damaged: set aside, its run is done again", err=True)
     if kept:
-        now = commit()["hash"]
-        old = sum(records.commits.get(run.key, now) != now for run in runs)
+        now, meant = commit().hash, {run.key for run in runs}
+        old = sum(record.key in meant and record.commit.hash != now for record in records.earlier)
         mixed = f" ({old} of them made by another commit)" if old else ""
         click.echo(f"{kept} of {len(runs)} runs were finished before and are kept{mixed}", err=True)
     others = len(records.finished) - kept
@@ -108,7 +110,7 @@ def _say_state(records: Records, runs: list[Run], kept: int) -> None:
         click.echo(f"{others} records there belong to other experiments", err=True)
 
 
-def _sweep(runs: list[Run], records: Records, kept: int, jobs: int, dask: str | None, stop: Event) -> None:
+def _sweep(runs: list[Run], records: Writer[RunRecord], kept: int, jobs: int, dask: str | None, stop: Event) -> None:
     if dask is None:
         with (
             Progress(len(runs), kept, jobs, pool_begins=True) as progress,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ from smash.problem.extras import EXECUTION, require
 
 if TYPE_CHECKING:
     require("smash topple-map", *EXECUTION, "matplotlib")
-    from smash.execution.trials.topple_map import Trial
+    from smash.records.trials import Trial
 
 
 @click.command("topple-map")
@@ -39,14 +40,12 @@ def command(highest_cut: int, most: int, seeds: int, scene: Path | None, jobs: i
     from smash.execution.scene.scene_file import default_scene, read_scene
     from smash.execution.trials.estimates import ENOUGH, TRUSTED, write_estimates
     from smash.execution.trials.topple_map import draw, estimates
-    from smash.experiments.episodes.topple_trials import read_trials, run_trials, wanted_trials
+    from smash.experiments.episodes.topple_trials import run_trials, wanted_trials
+    from smash.records.files import TRIALS
+    from smash.records.writing import Writer
 
     tabletop = default_scene() if scene is None else read_scene(scene)
-    out.mkdir(parents=True, exist_ok=True)
-    path = out / "trials.jsonl"
-    trials, damaged = read_trials(path)
-    if damaged:
-        click.echo(f"the last line of {path} was damaged: set aside, its trial is done again", err=True)
+    trials: dict[Hashable, Trial] = {}
     wanted = wanted_trials(tabletop, highest_cut, most, seeds)
 
     def ended(trial: Trial) -> None:
@@ -55,8 +54,11 @@ def command(highest_cut: int, most: int, seeds: int, scene: Path | None, jobs: i
         done = sum(key in trials for key in wanted)
         click.echo(f"[{done}/{len(wanted)}] cut {trial.height}, {trial.falling} falling: {words}", err=True)
 
-    with stopped_by_signals() as stop:
-        run_trials(tabletop, [key for key in wanted if key not in trials], path, jobs, stop, ended)
+    with stopped_by_signals() as stop, Writer(out, TRIALS) as records:
+        trials |= {trial.key: trial for trial in records.earlier}
+        if records.set_aside:
+            click.echo(f"the last line of {records.path} was damaged: set aside, its trial is done again", err=True)
+        run_trials(tabletop, wanted, records, jobs, stop, ended)
         if stop.is_set():
             raise Interrupted("interrupted; every finished trial is recorded, start again to do the rest")
     chosen = [trials[key] for key in wanted]

@@ -11,14 +11,17 @@ from threading import Event
 from typing import TYPE_CHECKING
 
 from smash.experiments.sweeps.experiment import Experiment, PlannerEntry, Run, check_experiment, experiment_runs
-from smash.experiments.sweeps.records import Records
-from smash.experiments.sweeps.sweep import Record, local_task, sweep
+from smash.experiments.sweeps.sweep import local_task, sweep
 from smash.problem.errors import SmashError
 from smash.problem.extras import TABLES, require
 from smash.problem.files.given import GivenInstance, given_instance
 from smash.problem.files.instances import write_instance
 from smash.problem.model import Instance
 from smash.problem.sets.suites import read_suite
+from smash.records.files import RUNS
+from smash.records.reading import finished_runs
+from smash.records.runs import RunRecord
+from smash.records.writing import Writer
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -61,7 +64,6 @@ def compare(
     require("compare", *TABLES)
     from smash_analysis.comparison import compared
     from smash_analysis.metrics import metric_names
-    from smash_analysis.records import read_records
 
     chosen = _chosen(instances)
     names = (planners,) if isinstance(planners, str) else tuple(planners)
@@ -73,7 +75,7 @@ def compare(
         experiment = comparison_of([str(suite)], names, budget=budget, variants=variants)
         runs = experiment_runs(experiment)
         _do(runs, out)
-        table = compared(read_records(out, {run.key for run in runs}))
+        table = compared(finished_runs(out, {run.key for run in runs}))
     return table.reindex(columns=[*COLUMNS, *metric_names(table)]).assign(planner=table["label"])
 
 
@@ -142,12 +144,12 @@ class _Silent:
     def begun(self, run: Run) -> None:
         """A run has started."""
 
-    def ended(self, run: Run, record: Record) -> None:
+    def ended(self, run: Run, record: RunRecord) -> None:
         """A run has ended and is recorded."""
 
 
 def _do(runs: Collection[Run], out: Path) -> None:
     """Do the runs one after the other and record them in `out`."""
     stop, silent = Event(), _Silent()
-    with Records(out) as records, ThreadPoolExecutor(1) as executor:
+    with Writer(out, RUNS) as records, ThreadPoolExecutor(1) as executor:
         sweep(runs, records, executor, local_task(stop, silent), silent, stop)

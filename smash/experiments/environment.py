@@ -9,11 +9,11 @@ import sys
 from functools import cache
 from importlib.metadata import PackageNotFoundError, entry_points, version
 from pathlib import Path
-from typing import Any
 
 from smash_baselines.encodings import GROUP as ENCODINGS
 
 from smash.planners.registry import GROUP
+from smash.records.record import Commit, Machine
 
 PACKAGES = (
     "smash-testbed",
@@ -51,7 +51,7 @@ def versions(planner: str) -> dict[str, str]:
     return found
 
 
-def commit() -> dict[str, Any]:
+def commit() -> Commit:
     """Return the commit of this code and whether files were changed since (both None outside a repository).
 
     Asked anew for each run: each starts an interpreter of its own, so a checkout during a sweep changes the code.
@@ -67,21 +67,21 @@ def commit() -> dict[str, Any]:
 
     head = git("rev-parse", "HEAD") if git("ls-files", "--error-unmatch", __file__) else None
     changed = git("status", "--porcelain", "--untracked-files=no") if head else None
-    return {"hash": head, "dirty": None if changed is None else bool(changed)}
+    return Commit(head, None if changed is None else bool(changed))
 
 
 @cache
-def machine() -> dict[str, Any]:
+def machine() -> Machine:
     """Return processor, cores, memory [MiB] and system."""
     import psutil
 
-    return {
-        "processor": _processor(),
-        "cores": os.cpu_count(),
-        "usable_cores": len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count(),
-        "memory_mib": psutil.virtual_memory().total // 2**20,
-        "system": f"{platform.system()} {platform.release()} {platform.machine()}",
-    }
+    return Machine(
+        processor=_processor(),
+        cores=os.cpu_count(),
+        usable_cores=len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count(),
+        memory_mib=psutil.virtual_memory().total // 2**20,
+        system=f"{platform.system()} {platform.release()} {platform.machine()}",
+    )
 
 
 def load() -> float:

@@ -13,10 +13,10 @@ from smash.problem.model import Instance
 from smash.problem.plan import Plan, check_plan
 
 if TYPE_CHECKING:
-    from smash.execution.episode import Episode, Performed
     from smash.execution.executor import Executor
     from smash.execution.physics.world import Frame
     from smash.execution.scene.tabletop import Tabletop
+    from smash.records.episodes import Episode, Performed
 
 REPLAN_BUDGET = 10.0
 """Wall time of each replanning, where none is given [s]."""

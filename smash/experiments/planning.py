@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import Job, Report
-from smash.planners.protocol import SolveOptions
+from smash.planners.protocol import Settings, ask
 from smash.planners.registry import DEFAULT, get_planner, make_ready
 from smash.problem.errors import PlannerCrashed, PlannerOutOfMemory, SmashError, Unsupported
 from smash.problem.files.given import GivenInstance, given_instance
-from smash.problem.model import Instance
+from smash.problem.model import Instance, PlanOptions
 from smash.problem.plan import Plan, check_plan
+from smash.problem.problem import Problem
 from smash.records.outcomes import OutcomeName
 
 LONGEST = 1e9
@@ -59,7 +60,8 @@ def plan(
         SmashError: where an argument is wrong.
     """
     _check(budget, max_topple, seed)
-    job = Job(planner, given_instance(instance), SolveOptions(topple, max_topple, seed=seed), budget)
+    problem = Problem(given_instance(instance), PlanOptions(topple, max_topple))
+    job = Job(planner, problem, Settings(seed=seed), budget)
     if not isolated:
         return _judged(_planned_here(job), job.instance)
     report = run_isolated(job)
@@ -94,11 +96,10 @@ def _check(budget: float, max_topple: int | None, seed: int) -> None:
 
 
 def _planned_here(job: Job) -> Plan:
-    """Run a planner in this process; the one place that knows how a planner is called and what it answers."""
-    planner = get_planner(job.planner)
-    make_ready(planner, job.planner, job.instance, job.options)
-    result = planner.solve(job.instance, job.options, job.budget)
-    return result.as_plan(job.instance, job.planner, job.options)
+    """Run a planner in this process."""
+    planner, problem, settings = get_planner(job.planner), job.problem, job.settings
+    make_ready(planner, job.planner, problem, settings)
+    return ask(planner, problem, settings, job.budget, name=job.planner)
 
 
 def _judged(answer: Plan, instance: Instance) -> Plan:

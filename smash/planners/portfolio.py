@@ -2,19 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from time import perf_counter
-from typing import Any, ClassVar
+from collections.abc import Sequence
+from typing import ClassVar
 
-from smash.planners.astar import BeamSearch, StateSearch
-from smash.planners.greedy import greedy_steps
-from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, Relay, SolveOptions
-from smash.problem.actions.registry import FAMILY, is_plain
-from smash.problem.model import Instance
-from smash.problem.views.numbered import Indexed
+from smash.planners.astar import BeamSearch, StateSearch, search_law_states
+from smash.planners.greedy import greedy_method, greedy_plans
+from smash.planners.protocol import (
+    Method,
+    MethodPlanner,
+    OnIncumbent,
+    PlanResult,
+    Relay,
+    Settings,
+    SolveLog,
+    left,
+    not_plain,
+    plain,
+    plan_options,
+    settings_of,
+)
+from smash.problem.actions.registry import FAMILY
+from smash.problem.model import Instance, PlanOptions
+from smash.problem.problem import Problem
 
-SPARE_SECONDS = 0.05
-"""Kept back from the budget for the end of the last part."""
 GREEDY_SHARE = 0.1
 """Share of the budget within which the greedy planner improves its plan."""
 LIGHT_SECONDS = 0.12
@@ -37,172 +47,137 @@ WIDE_SEARCH_SHARE, LARGE_SEARCH_SHARE = 0.4, 0.2
 BEAM_SHARE = 0.7
 """Share of what the layered model leaves for the beam; the exact search has the rest, if it can use it."""
 LAYERED_SHARE = 0.5
-"""Share of the remaining budget for the layered model."""
-
-Part = tuple[str, Callable[[], None]]
-"""A part of the solve with its name."""
+"""Share of the remaining budget for the layered model, where more comes after it."""
 
 
-class SmashPlanner(BasePlanner):
-    """The best anytime answer and the best proof that the package can give, its parts combined."""
+class SmashPlanner(MethodPlanner):
+    """The best anytime answer and the best proof that the package can give, its parts combined.
+
+    Costs, and actions beyond pick, place and topple, are left to what is still exact there: the search over the law's
+    states, and the layered model with what that leaves.
+    """
 
     summary: ClassVar[str] = "the default: greedy, precedence graph, searches over states and layered model combined"
     proves: ClassVar[bool] = True
     aggregating: ClassVar[frozenset[str]] = frozenset(FAMILY)
     weighs: ClassVar[bool] = True
     budget_dependent: ClassVar[bool] = True  # its parts get shares of the budget
+    gentle: ClassVar[bool] = True
 
     def solve(
-        self,
-        instance: Instance,
-        options: SolveOptions,
-        budget: float,
-        on_incumbent: OnIncumbent | None = None,
+        self, instance: Instance, options: PlanOptions, budget: float, on_incumbent: OnIncumbent | None = None
     ) -> PlanResult:
-        """Plan for at most `budget` seconds of wall time; ends as soon as the best plan is proven optimal."""
-        log = IncumbentLog(instance, options, on_incumbent, gentle=True)
-        if not is_plain(instance, options):
-            return self._family(instance, options, budget, log)
-        impossible = log.without_plan()
-        if impossible is not None:
-            return impossible
-        return _Combined(instance, options, budget, log).run()
+        """Plan an instance, as every planner does; spelt out here, where readers of the package begin."""
+        problem = Problem(instance, plan_options(options))
+        return PlanResult.of(self.plan(problem, settings_of(options), budget, on_incumbent))
 
-    @staticmethod
-    def _family(instance: Instance, options: SolveOptions, budget: float, log: IncumbentLog) -> PlanResult:
-        """Plan with what is still exact: the precedence graph and its kin count actions of pick, place and topple.
-
-        The search over the law's states comes first, the layered model gets what it leaves.
-        """
-        from smash.planners.astar.law_solve import offer_twin, search_family
-
-        began = perf_counter()
-        deadline = began + budget - min(SPARE_SECONDS, budget / 10)
-        details: dict[str, Any] = {"exact_methods": ["search over states", "layered model"]}
-        offer_twin(instance, options, log, began + GREEDY_SHARE * budget)
-        half = perf_counter() + SEARCH_SHARE * (deadline - perf_counter())
-        if search_family(instance, options, log, half, details):
-            return log.result(infeasible=True, bound_origin="astar", details=details)
-        if not log.proven and len(instance.blocks) <= FEW_BLOCKS:
-            from smash.planners.layered import LayeredPlanner
-
-            left = deadline - perf_counter()
-            answer = LayeredPlanner().solve(instance, options, left, Relay(log, "milp"))
-            if answer.status == "infeasible":
-                return log.result(infeasible=True, bound_origin=answer.bound_origin, details=details)
-        return log.result(details=details)
-
-
-class _Combined:
-    """One solve: the parts share the plans and the bounds of `log`."""
-
-    def __init__(self, instance: Instance, options: SolveOptions, budget: float, log: IncumbentLog) -> None:
-        self.instance = instance
-        self.options = options
-        self.log = log
-        self.budget = budget
-        self.deadline = perf_counter() + budget - min(SPARE_SECONDS, budget / 10)
-        self.problem = Indexed.of(instance)
-        self.log.prove(0, "start")
-        self.seconds: dict[str, float] = {}
-
-    def run(self) -> PlanResult:
-        """Run the parts in turn until the best plan is proven or the budget is spent."""
-        self._greedy()
-        search = StateSearch(self.problem, self.options, self._cost(), on_bound=lambda b: self.log.prove(b, "astar"))
-        beam = BeamSearch(self.problem, self.options, self._cost(), self.options.seed)
-        for name, part in self._parts(search, beam):
-            if self.log.proven or self._left() <= 0:
-                break
-            started = perf_counter()
-            part()
-            self.seconds[name] = perf_counter() - started
-        details: dict[str, Any] = {
-            "expanded": search.expanded,
-            "search": search.ended,
-            "beam": beam.ended,
-            "beam_width": beam.width,
-            "seconds": self.seconds,
-        }
-        return self.log.result(details=details)
-
-    def _parts(self, search: StateSearch, beam: BeamSearch) -> tuple[Part, ...]:
+    def methods(self, problem: Problem, settings: Settings) -> Sequence[Method]:
         """Return the parts in their order, which depends on the size."""
-        light = ("light search", lambda: self._search(search, perf_counter() + LIGHT_SECONDS, may_compile=False))
-        precedence = ("precedence", self._precedence)
-        passes = ("greedy passes", self._greedy_passes)
-        first_beam = ("first beam", lambda: self._beam(beam, min(FIRST_SECONDS, FIRST_SHARE * self._left())))
-        exact = ("search", lambda: self._search(search, perf_counter() + self._search_share() * self._left()))
-        small = self.problem.blocks <= SMALL_BLOCKS
+        part = _Parts(settings)
+        blocks = len(problem.instance.blocks)
+        precedence_share = PRECEDENCE_SHARE if blocks <= FEW_BLOCKS else LARGE_SHARE
+        wide_share = WIDE_SEARCH_SHARE if blocks <= FEW_BLOCKS else LARGE_SEARCH_SHARE
+        precedence = Method("precedence", plain, part.precedence, precedence_share)
+        small = (Method("search", plain, part.search, SEARCH_SHARE), precedence)
+        large = (
+            precedence,
+            Method("greedy passes", plain, part.greedy_passes, FIRST_SHARE, FIRST_SECONDS),
+            Method("first beam", plain, part.beams, FIRST_SHARE, FIRST_SECONDS),
+            Method("search", plain, part.search, wide_share),
+        )
         return (
-            light,
-            *((exact, precedence) if small else (precedence, passes, first_beam, exact)),
-            ("layered", self._layered),
-            ("beam", lambda: self._beam(beam, (BEAM_SHARE if search.ended is None else 1.0) * self._left())),
-            ("search to the end", lambda: self._search(search, self.deadline)),
-            ("beam to the end", lambda: self._beam(beam, self._left())),
+            greedy_method(settings, GREEDY_SHARE),
+            Method("light search", plain, part.light_search, most=LIGHT_SECONDS),
+            *(small if blocks <= SMALL_BLOCKS else large),
+            Method("the law's states", not_plain, search_law_states, SEARCH_SHARE),
+            Method("layered", few_blocks, part.layered, LAYERED_SHARE if problem.plain else 1.0),
+            Method("beam", plain, part.beams, lambda: 1.0 if part.search_has_ended else BEAM_SHARE),
+            Method("search to the end", plain, part.search),
+            Method("beam to the end", plain, part.beams),
         )
 
-    def _cost(self) -> int:
-        assert self.log.cost is not None
-        return self.log.cost
 
-    def _left(self) -> float:
-        return self.deadline - perf_counter()
+def few_blocks(problem: Problem) -> str | None:
+    """Take problems whose layered model can prove something."""
+    return None if len(problem.instance.blocks) <= FEW_BLOCKS else f"more than {FEW_BLOCKS} blocks"
 
-    def _greedy(self) -> None:
-        until = perf_counter() + GREEDY_SHARE * self.budget
-        for steps in greedy_steps(self.problem, self.options, until, self.options.seed):
-            self.log.offer(self.problem.actions(steps), "greedy")
 
-    def _greedy_passes(self) -> None:
+class _Parts:
+    """The methods of one solve: searches and beams go on where their turn before ended."""
+
+    def __init__(self, settings: Settings) -> None:
+        self.settings = settings
+        self._search: StateSearch | None = None
+        self._beam: BeamSearch | None = None
+
+    @property
+    def search_has_ended(self) -> bool:
+        """Whether the exact search over states can do no more."""
+        return self._search is not None and self._search.ended is not None
+
+    def greedy_passes(self, problem: Problem, log: SolveLog, until: float) -> None:
         """Give the greedy planner some more passes: cheap, and what helps most where locations are few."""
-        until = perf_counter() + min(FIRST_SECONDS, FIRST_SHARE * self._left())
-        for steps in greedy_steps(self.problem, self.options, until, self.options.seed, patient=True):
-            self.log.offer(self.problem.actions(steps), "greedy")
+        for actions in greedy_plans(problem, until, self.settings.seed, patient=True):
+            log.offer(actions, "greedy")
 
-    def _search_share(self) -> float:
-        if self.problem.blocks <= SMALL_BLOCKS:
-            return SEARCH_SHARE
-        return WIDE_SEARCH_SHARE if self.problem.blocks <= FEW_BLOCKS else LARGE_SEARCH_SHARE
+    def light_search(self, problem: Problem, log: SolveLog, until: float) -> None:
+        """Search over states as far as that needs no compiled code."""
+        self._search_on(problem, log, until, may_compile=False)
 
-    def _search(self, search: StateSearch, until: float, may_compile: bool = True) -> None:
-        """Search over states until `until` [s, clock of `perf_counter`]."""
-        until = min(until, self.deadline)
-        search.raise_bound(self.log.bound or 0, self._cost())
-        while search.ended is None and perf_counter() < until:
+    def search(self, problem: Problem, log: SolveLog, until: float) -> None:
+        """Search over states."""
+        self._search_on(problem, log, until, may_compile=True)
+
+    def _search_on(self, problem: Problem, log: SolveLog, until: float, *, may_compile: bool) -> None:
+        numbered, cost = problem.numbered, _cost(log)
+        if self._search is None:
+            self._search = StateSearch(numbered, problem.options, cost, on_bound=lambda b: log.prove(b, "astar"))
+        search = self._search
+        search.raise_bound(log.bound or 0, cost)
+        while search.ended is None and left(until) > 0:
             steps = search.run(until, may_compile)
             if steps is not None:
-                self.log.offer(self.problem.actions(steps), "exact")
-            if self.log.proven or steps is None:
-                return
+                log.offer(numbered.actions(steps), "exact")
+            if log.proven or steps is None:
+                break
+        log.details |= {"expanded": search.expanded, "search": search.ended}
 
-    def _beam(self, beam: BeamSearch, seconds: float) -> None:
-        """Search with beams for so many seconds; where no state was left out, the best plan is optimal."""
-        until = min(perf_counter() + seconds, self.deadline)
-        beam.lower_upper(self._cost())
+    def beams(self, problem: Problem, log: SolveLog, until: float) -> None:
+        """Search with beams; where no state was left out, the best plan is optimal."""
+        if self._beam is None:
+            self._beam = BeamSearch(problem.numbered, problem.options, _cost(log), self.settings.seed)
+        beam = self._beam
+        beam.lower_upper(_cost(log))
         while (steps := beam.run(until)) is not None:
-            self.log.offer(self.problem.actions(steps), "beam")
-            if self.log.proven:
-                return
+            log.offer(problem.numbered.actions(steps), "beam")
+            if log.proven:
+                break
         if beam.ended == "proven":
-            self.log.prove(min(beam.upper, self._cost()), "beam")
+            log.prove(min(beam.upper, _cost(log)), "beam")
+        log.details |= {"beam": beam.ended, "beam_width": beam.width}
 
-    def _precedence(self) -> None:
+    def precedence(self, problem: Problem, log: SolveLog, until: float) -> None:
+        """Bound the cost by the precedence graph, and schedule its choices."""
         from smash.planners.precedence.bound import ORIGIN, precedence_bound
 
         precedence_bound(
-            self.instance,
-            self.options,
-            perf_counter() + (PRECEDENCE_SHARE if self.problem.blocks <= FEW_BLOCKS else LARGE_SHARE) * self._left(),
-            lambda actions: self.log.offer(actions, "exact"),
-            self.options.threads,
-            on_bound=lambda bound: self.log.prove(bound, ORIGIN),
+            problem,
+            until,
+            lambda actions: log.offer(actions, "exact"),
+            self.settings.threads,
+            on_bound=lambda bound: log.prove(bound, ORIGIN),
         )
 
-    def _layered(self) -> None:
-        if self.problem.blocks > FEW_BLOCKS:
-            return
+    def layered(self, problem: Problem, log: SolveLog, until: float) -> None:
+        """Solve the layered model."""
         from smash.planners.layered import LayeredPlanner
 
-        LayeredPlanner().solve(self.instance, self.options, LAYERED_SHARE * self._left(), Relay(self.log, "milp"))
+        answer = LayeredPlanner().plan(problem, self.settings, left(until), Relay(log, "milp"))
+        if answer.status == "infeasible":
+            log.refute(answer.bound_origin or "layered")
+
+
+def _cost(log: SolveLog) -> int:
+    """Return the cost of the best plan: a plain problem that is feasible has a greedy one."""
+    assert log.cost is not None
+    return log.cost

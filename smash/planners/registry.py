@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib.metadata import EntryPoint, entry_points
 
-from smash.planners.protocol import Planner, SolveOptions, why_unsupported
+from smash.planners.protocol import Planner, Settings, why_unsupported
 from smash.problem.errors import SmashError, Unsupported
 from smash.problem.extras import missing_extra
-from smash.problem.model import Instance
+from smash.problem.problem import Problem
 
 GROUP = "smash.planners"
 DEFAULT = "smash"
@@ -60,19 +60,19 @@ def get_planner(name: str) -> Planner:
     return planner
 
 
-def make_ready(planner: Planner, name: str, instance: Instance, options: SolveOptions) -> None:
+def make_ready(planner: Planner, name: str, problem: Problem, settings: Settings) -> None:
     """Ask whether a planner takes a problem, then have it load what it loads once: all that precedes its clock.
 
     Args:
         planner: the planner.
         name: what it is called.
-        instance: the problem.
-        options: what a plan may use.
+        problem: what it is to plan.
+        settings: how.
 
     Raises:
         Unsupported: where it does not take the problem.
     """
-    reason = why_unsupported(planner, instance, options)
+    reason = why_unsupported(planner, problem, settings)
     if reason:
         raise Unsupported(f"planner {name!r}: unsupported: {reason}")
     prepare = getattr(planner, "prepare", None)

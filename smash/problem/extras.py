@@ -13,7 +13,7 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "pddl": ("unified_planning", "up_fast_downward", "up_symk", "up_enhsp", "up_aries"),
     "execution": ("pybullet", "pybullet_data", "ompl", "pinocchio", "coal", "toppra", "scipy", "meshcat", "imageio"),
     "cluster": ("dask", "distributed"),
-    "gurobi": ("gurobipy",),
+    "gurobi": ("gurobipy", "scipy"),
 }
 """Extra -> the modules that come with it."""
 

@@ -12,28 +12,25 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Sequence
 
-from smash.problem.actions.registry import kinds_of
-from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal
+from smash.problem.model import Instance, OnGoal, PositionsGoal, StacksGoal
+from smash.problem.rules import Law
 
 Pile = tuple[str, ...]
 ENOUGH_LOCATIONS = 3
 """With so many locations pick and place alone reaches every arrangement."""
 
 
-def why_infeasible(instance: Instance, options: PlanOptions) -> str | None:
+def why_infeasible(law: Law) -> str | None:
     """Return in one line why no plan exists, or None where one does.
 
     The answer is exact, but for instances with further aggregating actions: there None promises nothing.
-
-    Args:
-        instance: the problem.
-        options: whether topple is allowed; a cap on its blocks makes no difference.
+    A cap on the blocks of a topple makes no difference. `Problem.infeasible` keeps the answer.
     """
-    goal = instance.goal
+    instance, goal = law.instance, law.instance.goal
     locations = len(instance.locations)
     if isinstance(goal, OnGoal) and len(goal.bottom) > locations:
         return f"the goal wants {len(goal.bottom)} blocks at the bottom of a location, there are {locations} locations"
-    if kinds_of(instance, options) or locations >= ENOUGH_LOCATIONS:
+    if law.kinds or locations >= ENOUGH_LOCATIONS:
         return None
     if isinstance(goal, OnGoal):
         reachable = any(_towers_fit(instance, goal, piles) for piles in _splits(instance))

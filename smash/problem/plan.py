@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Literal, NamedTuple, get_args
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal, NamedTuple, get_args
 
 from smash.problem.model import Action, Aggregating, Instance, Pick, Place, PlanOptions
 from smash.problem.rules import Law, Verdict
@@ -27,7 +27,8 @@ class Plan:
 
     `status` is `optimal` (proven), `feasible`, `infeasible` (proven) or `unknown` (budget spent).
     `lower_bound` is None where the planner proves none; `bound_origin` names the proof. Without a plan
-    `actions` and `cost` are None.
+    `actions` and `cost` are None. `details` holds what only this planner measures (model size, translation seconds); it
+    is in records, not in plan files.
     """
 
     instance: str
@@ -39,6 +40,7 @@ class Plan:
     bound_origin: str | None = None
     incumbents: tuple[Incumbent, ...] = ()
     stated_cost: int | None = None
+    details: Mapping[str, Any] = field(default_factory=dict, compare=False)
 
     @property
     def cost(self) -> int | None:

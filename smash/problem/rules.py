@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
+from smash.problem.actions.kind import AggregatingKind
 from smash.problem.actions.registry import kind_of, kinds_of
 from smash.problem.errors import IllegalAction
 from smash.problem.model import (
@@ -45,14 +47,32 @@ class Verdict:
 
 
 class Law:
-    """The law for one instance under given plan options."""
+    """The law for one instance under given plan options.
 
-    def __init__(self, instance: Instance, options: PlanOptions | None = None) -> None:
+    Attributes:
+        instance: the instance.
+        options: what a plan may use.
+        kinds: the kinds of aggregating actions that it may use, in the order of the registry.
+    """
+
+    def __init__(
+        self,
+        instance: Instance,
+        options: PlanOptions | None = None,
+        kinds: tuple[AggregatingKind[Any], ...] | None = None,
+    ) -> None:
+        """Make the law.
+
+        Args:
+            instance: the instance.
+            options: what a plan may use; everything, where None.
+            kinds: the kinds of aggregating actions, where they are known already.
+        """
         self.instance = instance
         self.options = options or PlanOptions()
         self._room = {carrier.name: carrier.capacity for carrier in instance.carriers}
-        self._kinds = kinds_of(instance, self.options)
-        self._carries = any(kind.name == "carry" for kind in self._kinds)
+        self.kinds = tuple(kinds_of(instance, self.options)) if kinds is None else kinds
+        self._carries = any(kind.name == "carry" for kind in self.kinds)
 
     def refusal(self, state: State, action: Action) -> str | None:
         """Return why `action` is illegal in `state`, or None if it is legal."""
@@ -87,9 +107,10 @@ class Law:
         reason = self.refusal(state, action)
         if reason is not None:
             raise IllegalAction(f"{action}: {reason}")
-        self._carry_out(state, action)
+        self.carry_out(state, action)
 
-    def _carry_out(self, state: State, action: Action) -> None:
+    def carry_out(self, state: State, action: Action) -> None:
+        """Carry out a legal `action` on `state`, in place; it is not asked whether it is legal."""
         match action:
             case Pick(block, source):
                 if source in state.piles:
@@ -116,7 +137,7 @@ class Law:
         yield from (Pick(pile[-1], location) for location, pile in state.piles.items() if pile)
         yield from (Pick(block, TABLE) for block in sorted(state.table))
         yield from (Pick(block, name) for name, blocks in state.carried.items() for block in sorted(blocks))
-        for kind in self._kinds:
+        for kind in self.kinds:
             yield from kind.legal(self.instance, self.options, state)
 
     def open_carriers(self, state: State) -> Iterator[str]:
@@ -147,7 +168,7 @@ class Law:
             if reason is not None:
                 return Verdict(False, f"{action}: {reason}", step)
             total += 1 if plain else self.cost(state, action)
-            self._carry_out(state, action)
+            self.carry_out(state, action)
         shortfall = self.goal_shortfall(state)
         return Verdict(shortfall is None, f"goal not reached: {shortfall}" if shortfall else "", cost=total)
 
@@ -166,7 +187,7 @@ class Law:
             if reason is not None:
                 raise IllegalAction(f"{action}: {reason}")
             total += self.cost(state, action)
-            self._carry_out(state, action)
+            self.carry_out(state, action)
         return total
 
     def states(self, actions: Sequence[Action]) -> Iterator[State]:
@@ -215,7 +236,7 @@ class Law:
         kind = kind_of(action)
         if not self.options.allows(kind.name):
             return f"{kind.name} is not allowed"
-        if kind not in self._kinds:
+        if kind not in self.kinds:
             return f"the instance has no {kind.name}"
         if state.hand is not None:
             return f"the hand holds {state.hand!r}"

@@ -2,7 +2,8 @@
 
 import pytest
 from smash_analysis import command
-from smash_analysis.records import NoRecords
+
+from smash.records.reading import NoRecords
 
 
 def written(results, out):
@@ -12,7 +13,7 @@ def written(results, out):
 
 
 def without_records(results, out):
-    raise NoRecords(f"{results}: no finished run")
+    raise NoRecords(str(results), "no finished run")
 
 
 def test_files_go_below_the_results_unless_said_and_are_named(tmp_path, monkeypatch, capsys):

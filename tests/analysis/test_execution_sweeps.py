@@ -4,8 +4,8 @@ import pandas as pd
 import pytest
 from smash_analysis.execution_sweeps import make, read_trials, saved_table, scene_table, size_table
 from smash_analysis.execution_tables import read_episodes
-from smash_analysis.records import NoRecords
 
+from smash.problem.errors import MalformedFile
 from tests.analysis.test_execution_tables import record
 
 
@@ -71,5 +71,5 @@ def test_tables_and_plot_are_written(results, tmp_path):
 
 
 def test_no_trials_are_named(tmp_path):
-    with pytest.raises(NoRecords, match=r"trials\.jsonl"):
+    with pytest.raises(MalformedFile, match=r"trials\.jsonl"):
         read_trials([tmp_path])

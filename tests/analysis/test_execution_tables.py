@@ -2,13 +2,25 @@ import json
 
 import pytest
 from smash_analysis.execution_tables import failure_table, make, metric_table, paired_table, read_episodes, slower_table
-from smash_analysis.records import NoRecords
+
+from smash.problem.errors import MalformedFile
 
 
 def record(instance, variant, seconds, success=True, seed=0, task=0.0):
     failure = None if success else {"name": "slip", "reason": "it slipped", "step": 2, "action": ["pick", "a", "s"]}
     times = {"offline": 0.1, "offline_cpu": 0.1, "online": 0.2, "online_cpu": 0.2, "execution": seconds, "task": task}
     episode = {
+        "format": "smash-episode/1",
+        "instance": instance,
+        "planner": "smash",
+        "topple": True,
+        "max_topple": None,
+        "scene": "default",
+        "seed": seed,
+        "replanning": False,
+        "plan_cost": 8,
+        "final": {"piles": {}, "table": []},
+        "actions": [],
         "success": success,
         "failure": failure,
         "times": times,
@@ -19,6 +31,12 @@ def record(instance, variant, seconds, success=True, seed=0, task=0.0):
     return {
         "format": "smash-episode-run/1",
         "key": f"{instance}/{variant}/{seed}",
+        "run": f"{instance}/{variant}",
+        "scene": None,
+        "status": "feasible",
+        "budget": 1.0,
+        "best_plan_seconds": 0.01,
+        "wall_seconds": 12.0,
         "instance": instance,
         "suite": "multi-4",
         "label": "smash",
@@ -34,7 +52,7 @@ def record(instance, variant, seconds, success=True, seed=0, task=0.0):
         "started": "2026-01-01T00:00:00.000+00:00",
         "load_average": [0.1, 0.2],
         "commit": {"hash": "c", "dirty": False},
-        "machine": {"processor": "p"},
+        "machine": {"processor": "p", "cores": 2, "usable_cores": 2, "memory_mib": 1000, "system": "Linux"},
         "versions": {},
     }
 
@@ -119,7 +137,7 @@ def test_tables_are_written_as_markdown_and_latex(results):
 
 
 def test_without_records_there_is_one_line(tmp_path):
-    with pytest.raises(NoRecords, match="cannot be read"):
+    with pytest.raises(MalformedFile, match="cannot be read"):
         read_episodes(tmp_path)
 
 

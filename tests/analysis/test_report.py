@@ -4,12 +4,12 @@ import json
 import re
 
 import pytest
-from smash_analysis.records import NoRecords
 from smash_analysis.report.grids import ablation_grids
 from smash_analysis.report.page import make
 from smash_analysis.report.pictures import scenes
 from smash_analysis.report.sources import find_sources
 
+from smash.records.reading import NoRecords
 from tests.analysis.made_up import DOCUMENT, record, small_sweep, write
 
 
@@ -63,7 +63,7 @@ def test_a_cell_of_the_heatmap_holds_the_readings_at_its_budget():
     late = actions.cells[actions.rows.index("0")][actions.columns.index("30")]
     assert (early.text, late.text) == ("12.5", "10.5")
     assert [entry[1:] for entry in early.entries] == [["12", "0.05"], ["13", "0.05"]]
-    assert [runs[entry[0]]["instance"] for entry in late.entries] == ["i0", "i1"]
+    assert [runs[entry[0]].instance for entry in late.entries] == ["i0", "i1"]
 
 
 def test_a_cell_without_a_plan_says_so_and_still_answers():
@@ -98,7 +98,7 @@ def test_a_damaged_directory_is_named_beside_the_whole_ones(tmp_path):
     (tmp_path / "torn").mkdir()
     (tmp_path / "torn" / "runs.jsonl").write_text("{}\n{}\n")
     whole = {source.name: source for source in find_sources(tmp_path, tmp_path / "out")}
-    assert "torn/runs.jsonl:1" in whole["torn"].problems[0]
+    assert "torn/runs.jsonl:1" in str(whole["torn"].problems[0])
     assert len(whole["whole"].runs) == 1
 
 

@@ -3,18 +3,12 @@
 import pandas as pd
 from smash_analysis.scoop import BASELINE, scoop_table
 
+from tests.analysis.made_up import record
+
 
 def run(variant, actions, cost, label="smash"):
-    return {
-        "label": label,
-        "variant": variant,
-        "instance": "scoop",
-        "actions": actions,
-        "cost": cost,
-        "status": "optimal",
-        "wall_seconds": 0.5,
-        "instance_document": {"costs": {"unit": "ms"}},
-    }
+    more = {"actions": actions, "cost": cost, "status": "optimal", "wall_seconds": 0.5}
+    return record(label=label, variant=variant, instance="scoop", instance_document={"costs": {"unit": "ms"}}, **more)
 
 
 def episode(variant, seed, execution, success=True, policy="replan"):

@@ -24,6 +24,7 @@ from smash.problem import (
 )
 from smash.problem.files.instances import instance_document
 from smash.problem.model import PositionsGoal, StacksGoal
+from smash.problem.problem import Problem
 from tests.strategies import instances, plan_options
 
 FEW = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -50,7 +51,7 @@ def cost(steps) -> int:
 @FEW
 @given(instances(max_blocks=5, odd_names=True), plan_options(), st.sampled_from(TOPPLE_ENCODINGS), st.integers(0, 99))
 def test_every_legal_plan_can_be_said_and_read_back_at_the_same_cost(instance, options, wanted, seed):
-    if unsupported_reason(instance, options, wanted):
+    if unsupported_reason(Problem(instance, options), wanted):
         return
     task = compile_instance(instance, options, wanted)
     actions = random_walk(instance, options, 20, seed)
@@ -65,7 +66,7 @@ def test_every_legal_plan_can_be_said_and_read_back_at_the_same_cost(instance, o
 @FEW
 @given(instances(max_blocks=5, odd_names=True), plan_options(), st.sampled_from(TOPPLE_ENCODINGS))
 def test_a_problem_reads_back_as_its_instance(instance, options, wanted):
-    if unsupported_reason(instance, options, wanted):
+    if unsupported_reason(Problem(instance, options), wanted):
         return
     read = read_problem_text(compile_instance(instance, options, wanted).problem_text)
     assert instance_document(read.instance) == instance_document(instance)

@@ -14,7 +14,7 @@ from smash_baselines.steps import actions_of, steps_of
 from smash_baselines.task import compile_instance
 
 from smash.cli.export_pddl import command
-from smash.planners.protocol import SolveOptions, why_unsupported
+from smash.planners.protocol import Settings, SolveOptions, plan_options, why_unsupported
 from smash.problem import (
     TABLE,
     Carrier,
@@ -29,8 +29,8 @@ from smash.problem import (
     make_instance,
     write_instance,
 )
-from smash.problem.actions.registry import is_plain
 from smash.problem.blocksworld.sexpr import parse_expression
+from smash.problem.problem import Problem
 from tests.baselines.test_encodings import random_walk
 from tests.cheapest import cheapest_plan
 from tests.family_strategies import family_instances, family_options
@@ -56,7 +56,7 @@ def stated_cost(steps, task) -> int:
 @FEW
 @given(family_instances(max_blocks=5, odd_names=True), family_options(), st.integers(0, 99))
 def test_every_legal_plan_can_be_said_and_read_back_at_the_same_cost(instance, options, seed):
-    if is_plain(instance, options):
+    if Problem(instance, options).plain:
         return
     task = compile_instance(instance, options, "chain")
     actions = random_walk(instance, options, 15, seed)
@@ -94,7 +94,7 @@ def test_unified_planning_simulates_what_the_law_does(instance, options, seed):
     from smash_baselines.up_problem import problem_of_task, up_plan
     from unified_planning.engines import UPSequentialSimulator
 
-    if is_plain(instance, options):
+    if Problem(instance, options).plain:
         return
     task = compile_instance(instance, options, "chain")
     problem = problem_of_task(task)
@@ -161,17 +161,19 @@ def test_engines_leave_what_the_goal_does_not_name_on_the_table_and_exports_do_n
 
 
 def test_planners_say_what_they_take():
-    assert why_unsupported(FdLama(), scoop(), SolveOptions()) is None
-    assert "chain" in why_unsupported(FdLamaConditional(), scoop(), SolveOptions())
-    assert why_unsupported(FdOpt().with_encoding("chain"), scoop(), SolveOptions()) is None
-    assert "carry" in why_unsupported(Aries(), scoop(), SolveOptions())
-    assert "costs are in ms" in why_unsupported(Aries(), scoop(capacities={}), SolveOptions(without=("carry",)))
+    assert why_unsupported(FdLama(), Problem(scoop(), PlanOptions()), Settings()) is None
+    assert "chain" in why_unsupported(FdLamaConditional(), Problem(scoop(), PlanOptions()), Settings())
+    assert why_unsupported(FdOpt().with_encoding("chain"), Problem(scoop(), PlanOptions()), Settings()) is None
+    assert "carry" in why_unsupported(Aries(), Problem(scoop(), PlanOptions()), Settings())
+    assert "costs are in ms" in why_unsupported(
+        Aries(), Problem(scoop(capacities={}), PlanOptions(without=("carry",))), Settings()
+    )
     assert {part.kind for part in PARTS} >= {"topple", "carry", "lift"}
 
 
 def assert_proven(planner, instance, options, budget=60.0):
     solve_options = SolveOptions(options.topple, options.max_topple, without=options.without)
-    assert why_unsupported(planner, instance, solve_options) is None
+    assert why_unsupported(planner, Problem(instance, plan_options(solve_options)), Settings()) is None
     try:
         best = cheapest_plan(instance, options, 30_000)
     except MemoryError:

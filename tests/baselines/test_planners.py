@@ -119,18 +119,28 @@ def test_odd_names_starts_on_buffers_and_on_the_table():
 
 
 @pytest.mark.parametrize("planner", [FdLama, FdOpt])
-def test_the_budget_is_wall_time_and_holds(planner):
+def test_a_spent_budget_is_said(planner):
     instance = read_instance(suite_files("multi-9")[1])
-    started = time.monotonic()
     result = solve(planner(), instance, SolveOptions(topple=False), budget=1.0)
-    assert time.monotonic() - started < 2.0  # of the 1.5 promised: the machine may be busy
     assert result.status in ("feasible", "unknown")
     assert result.details["outcome"] == "budget spent"
 
 
+@pytest.mark.timing
+@pytest.mark.parametrize("planner", [FdLama, FdOpt])
+def test_the_budget_is_wall_time_and_holds(planner):
+    instance = read_instance(suite_files("multi-9")[1])
+    started = time.monotonic()
+    solve(planner(), instance, SolveOptions(topple=False), budget=1.0)
+    assert time.monotonic() - started < 1.5
+
+
 def test_a_lower_bound_stands_when_the_budget_ends_first():
     instance = read_instance(suite_files("multi-9")[1])
-    result = solve(FdOpt(), instance, SolveOptions(topple=False), budget=4.0)
+    for budget in (4.0, 16.0, 64.0):  # on a busy machine the search may not have begun by the end of the first
+        result = solve(FdOpt(), instance, SolveOptions(topple=False), budget)
+        if result.lower_bound is not None:
+            break
     assert result.status == "unknown"
     assert 10 < result.lower_bound <= 40
     assert result.bound_origin == "fd-opt"
@@ -180,8 +190,8 @@ def test_killing_the_caller_leaves_no_engine(number):
     engines = psutil.Process(caller.pid).children(recursive=True)
     assert engines
     caller.send_signal(number)
-    caller.communicate(timeout=10)
-    _, alive = psutil.wait_procs(engines, timeout=3)
+    caller.communicate(timeout=60)
+    _, alive = psutil.wait_procs(engines, timeout=60)
     assert not alive
 
 
@@ -196,14 +206,14 @@ def test_aries_and_its_server_die_with_the_caller():
         env={**os.environ, "PYTHONPATH": str(Path(planners.__file__).parents[1])},
     )
     family = psutil.Process(caller.pid)
-    deadline = time.monotonic() + 20
+    deadline = time.monotonic() + 100
     while not any("aries_linux" in child.name() for child in family.children(recursive=True)):
         assert time.monotonic() < deadline
         time.sleep(0.1)
     engines = family.children(recursive=True)
     caller.kill()
-    caller.communicate(timeout=10)
-    _, alive = psutil.wait_procs(engines, timeout=3)
+    caller.communicate(timeout=60)
+    _, alive = psutil.wait_procs(engines, timeout=60)
     assert not alive
 
 

@@ -40,7 +40,7 @@ def factory():
 def test_oneshot_solves_every_encoding_and_the_library_accepts_the_plan(factory, wanted, options):
     problem = up_problem(figure_1(), options, wanted)
     with factory.OneshotPlanner(name="smash", params=PLANNER) as planner:
-        result = planner.solve(problem, timeout=10)
+        result = planner.solve(problem, timeout=60)
     assert result.status == PlanGenerationResultStatus.SOLVED_OPTIMALLY
     assert result.metrics["lower_bound"] == str(optimal_cost(figure_1(), options))
     with factory.PlanValidator(problem_kind=problem.kind) as validator:
@@ -50,7 +50,7 @@ def test_oneshot_solves_every_encoding_and_the_library_accepts_the_plan(factory,
 def test_anytime_plans_get_better_and_the_last_says_what_is_proven(factory):
     problem = up_problem(read_instance(suite_files("multi-6")[0]), PlanOptions(), "chain")
     with factory.AnytimePlanner(name="smash", params={"planner": "fd-opt-ipdb"}) as planner:
-        results = list(planner.get_solutions(problem, timeout=20))
+        results = list(planner.get_solutions(problem, timeout=100))
     assert results[-1].status == PlanGenerationResultStatus.SOLVED_OPTIMALLY
     assert all(result.status == PlanGenerationResultStatus.INTERMEDIATE for result in results[:-1])
     assert len(results) > 1
@@ -73,7 +73,7 @@ def test_the_librarys_example_problems_are_answered_as_unsupported(factory):
         if not example.problem.kind <= kinds:
             continue
         with factory.OneshotPlanner(name="smash", params=PLANNER) as planner:
-            result = planner.solve(example.problem, timeout=1)
+            result = planner.solve(example.problem, timeout=30)
         assert result.status == PlanGenerationResultStatus.UNSUPPORTED_PROBLEM, name
         assert result.log_messages
         refused += 1

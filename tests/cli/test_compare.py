@@ -14,7 +14,7 @@ def test_planners_are_run_and_compared(tower_file, tmp_path):
     names = [word for name in ("sound", "bare", "raises", "lacks") for word in ("--planner", name)]
     command = [sys.executable, "-m", "smash", "compare", suite, *names, "--variant", "topple", "--budget", 2]
     ended = subprocess.run(
-        list(map(str, [*command, "--out", tmp_path / "out"])), capture_output=True, text=True, timeout=100
+        list(map(str, [*command, "--out", tmp_path / "out"])), capture_output=True, text=True, timeout=110
     )
     assert ended.returncode == 0, ended.stderr
     assert "pip install luck; its 1 runs are left out" in ended.stderr
@@ -42,7 +42,7 @@ def test_records_of_another_comparison_are_kept_and_left_out_of_the_table(tower_
             tmp_path / "out",
         ]
         return subprocess.run(
-            list(map(str, [sys.executable, "-m", "smash", *command])), capture_output=True, text=True, timeout=100
+            list(map(str, [sys.executable, "-m", "smash", *command])), capture_output=True, text=True, timeout=110
         )
 
     assert compare("sound").returncode == 0
@@ -54,6 +54,6 @@ def test_records_of_another_comparison_are_kept_and_left_out_of_the_table(tower_
 @pytest.mark.parametrize("wrong", [["--planner", "nobody"], ["--planner", "greedy", "--variant", "x"], []])
 def test_bad_settings_are_one_line(tmp_path, wrong):
     command = [sys.executable, "-m", "smash", "compare", "multi-4", *wrong, "--out", str(tmp_path / "out")]
-    ended = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=110)
     assert ended.returncode == 2
     assert ended.stderr.count("\n") == 1

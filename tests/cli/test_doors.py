@@ -14,7 +14,7 @@ from smash.cli import smash as command_group
 def smash(*arguments, cwd=None):
     """Run the command as a user does."""
     return subprocess.run(
-        [sys.executable, "-m", "smash", *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=60
+        [sys.executable, "-m", "smash", *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=110
     )
 
 

@@ -8,8 +8,9 @@ from smash.cli.frontier import command
 from smash.experiments.studies.frontier import fewest_buffers, frontier
 from smash.planners.portfolio import SmashPlanner
 from smash.problem import PlanOptions, make_instance, write_instance
+from smash.problem.buffers import with_buffers
 from smash.problem.model import StacksGoal
-from smash.problem.sets.suites import read_suite, with_buffers
+from smash.problem.sets.suites import read_suite
 from tests.oracle import optimal_cost
 
 

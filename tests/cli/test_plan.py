@@ -14,7 +14,7 @@ def plan(tower_file, tmp_path):
     def call(planner, *arguments):
         out = tmp_path / "plan.json"
         command = [sys.executable, "-m", "smash", "plan", tower_file, "--planner", planner, "--out", out, *arguments]
-        ended = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=60)
+        ended = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=110)
         return ended, json.loads(out.read_text()) if out.exists() else None
 
     return call

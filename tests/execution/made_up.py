@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from smash.execution.episode import Arrangement, Episode, Performed, Times, Totals
 from smash.execution.viewing.recording import Recording
+from smash.records.episodes import Arrangement, Episode, Performed, Times, Totals
 
 
 def recording_of(blocks, seconds=1.0, interval=0.08):

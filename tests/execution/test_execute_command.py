@@ -101,7 +101,7 @@ def test_a_polite_kill_ends_an_execution_as_ctrl_c_does_and_leaves_nothing(filed
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, cwd=filed, env=environment) as running:
         time.sleep(6)
         running.terminate()
-        words = running.communicate(timeout=30)[1]
+        words = running.communicate(timeout=100)[1]
     assert running.returncode == 130
     assert "smash: interrupted" in words.splitlines()
     assert sorted(path.name for path in filed.iterdir()) == ["instance.json", "plan.json"]

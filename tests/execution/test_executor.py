@@ -2,7 +2,6 @@ import dataclasses
 
 import pytest
 
-from smash.execution.episode import episode_text
 from smash.execution.executor import Executor, observed_instance
 from smash.execution.policy import OPEN
 from smash.execution.scene.scene_file import default_scene
@@ -10,6 +9,7 @@ from smash.execution.scene.tabletop import Friction
 from smash.execution.viewing.recording import Recording
 from smash.problem import Law, Pick, Place, PositionsGoal, make_instance
 from smash.problem.files.documents import parse_json
+from smash.records.episodes import episode_text
 from tests.execution.episodes import buried_plan, buried_target, plan_of, swapped_pair, swapped_plan
 
 

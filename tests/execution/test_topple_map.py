@@ -9,8 +9,9 @@ from click.testing import CliRunner
 from smash.cli import smash
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.trials.estimates import Rate, read_estimates, write_estimates
-from smash.execution.trials.topple_map import Landing, Trial, draw, estimates, run_trial
+from smash.execution.trials.topple_map import draw, estimates, run_trial
 from smash.problem.errors import MalformedFile
+from smash.records.trials import Landing, Trial
 
 
 def trial(height, falling, good, seed=0):
@@ -95,9 +96,9 @@ def test_a_map_that_was_interrupted_keeps_its_trials_and_leaves_no_process(tmp_p
         assert running.stderr.readline().startswith("[1/")
         workers = psutil.Process(running.pid).children(recursive=True)
         running.send_signal(signal.SIGINT)
-        rest = running.communicate(timeout=30)[1].splitlines()
+        rest = running.communicate(timeout=100)[1].splitlines()
     assert running.returncode == 130
     assert rest[-1].endswith("start again to do the rest")
     assert workers
-    assert not psutil.wait_procs(workers, timeout=10)[1]
+    assert not psutil.wait_procs(workers, timeout=60)[1]
     assert (tmp_path / "trials.jsonl").read_text().count("\n") >= 1

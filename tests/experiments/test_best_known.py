@@ -10,12 +10,12 @@ from click.testing import CliRunner
 
 from smash.cli.best_known import command as best_known
 from smash.cli.submit_check import command as submit_check
-from smash.experiments.best_known.best_known import BestKnown, Found, open_instances, options_of
 from smash.experiments.best_known.files import LIST, Contradiction, csv_text, read_best_known, write_best_known
 from smash.experiments.best_known.open_table import BEGIN, open_table, put_between
+from smash.experiments.best_known.standing import BestKnown, Found, open_instances, options_of
 from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.sweeps.experiment import Experiment, PlannerEntry, experiment_runs
-from smash.experiments.sweeps.records import Records, record_of
+from smash.experiments.sweeps.sweep import record_of
 from smash.planners.precedence.certify import certify
 from smash.planners.protocol import SolveOptions
 from smash.planners.registry import get_planner
@@ -23,6 +23,9 @@ from smash.problem import Law, MalformedFile, PlanOptions, SmashError, Topple
 from smash.problem.certificate import certificate_text
 from smash.problem.files.plans import plan_document, plan_text, read_plan
 from smash.problem.model import Pick, Place
+from smash.problem.problem import Problem
+from smash.records.files import RUNS
+from smash.records.writing import Writer
 
 ROOT = Path(__file__).parents[2]
 NAME = "open-few-buffers-01"
@@ -140,7 +143,7 @@ def test_a_claimed_bound_is_not_believed_without_a_certificate(submit):
 
 
 def test_a_certificate_raises_the_bound_of_every_variant_that_allows_less(submit, known, tmp_path):
-    proof = certify(open_instances()[NAME], PlanOptions(), perf_counter() + 10)
+    proof = certify(Problem(open_instances()[NAME], PlanOptions()), perf_counter() + 10)
     file = tmp_path / "proof.json"
     file.write_text(certificate_text(proof))
     code, words = submit(filed("topple"), "--certificate", file)
@@ -180,7 +183,7 @@ def test_records_of_a_sweep_fill_the_list_and_a_second_time_change_nothing(tmp_p
     experiment = Experiment(
         "few", ["open-few-buffers", "multi-4"], [PlannerEntry("smash")], [2.0], instances=1, variants=["topple"]
     )
-    with Records(tmp_path / "runs") as records:
+    with Writer(tmp_path / "runs", RUNS) as records:
         for run in experiment_runs(experiment):
             records.append(record_of(run, run_isolated(run.job), datetime.now(UTC), 0.0))
     command = ("update", tmp_path / "runs", "--list", tmp_path / "list")

@@ -11,7 +11,7 @@ from collections import Counter
 
 import pytest
 
-from smash.experiments.sweeps.records import RUNS
+from smash.records.files import RUNS
 from tests.experiments.tables import tables
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("third_party"), pytest.mark.timeout(600)]
@@ -62,7 +62,7 @@ def command(file, out, *more):
 
 
 def records(out):
-    return [json.loads(line) for line in (out / RUNS).read_text().splitlines()]
+    return [json.loads(line) for line in (out / RUNS.name).read_text().splitlines()]
 
 
 def worker_processes(scheduler):
@@ -78,7 +78,7 @@ def test_two_killed_workers_lose_only_what_they_were_running(cluster, experiment
     with open(tmp_path / "said", "w") as said:
         running = subprocess.Popen(command(experiment, out, "--dask", scheduler), stderr=said)
         for least in sorted(chance.sample(range(5, 190), 2)):
-            while not (out / RUNS).exists() or (out / RUNS).read_text().count("\n") < least:
+            while not (out / RUNS.name).exists() or (out / RUNS.name).read_text().count("\n") < least:
                 time.sleep(0.05)
                 assert running.poll() is None
             os.kill(chance.choice(worker_processes(scheduler)), signal.SIGKILL)
@@ -97,7 +97,7 @@ def test_a_scheduler_that_dies_loses_no_record_and_is_one_line(cluster, experime
     scheduler, process = cluster
     out = tmp_path / "out"
     running = subprocess.Popen(command(experiment, out, "--dask", scheduler), stderr=subprocess.PIPE, text=True)
-    while not (out / RUNS).exists() or (out / RUNS).read_text().count("\n") < 5:
+    while not (out / RUNS.name).exists() or (out / RUNS.name).read_text().count("\n") < 5:
         time.sleep(0.05)
     process.kill()
     _, said = running.communicate(timeout=120)

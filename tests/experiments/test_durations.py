@@ -5,6 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from smash.experiments.studies.durations import Duration, durations, fit
+from smash.records.episodes import Performed, Times
 from tests.execution.scooping import scoop
 
 PLACES = {name: (x, 0.0) for name, x in {"s1": 0.0, "s2": 0.1, "g1": 1.0, "g2": 1.1, "left": 0.2, "right": 1.2}.items()}
@@ -24,7 +25,8 @@ def test_bases_and_travel_come_out_again(pick, place, per_metre):
 
 
 def row(*action, time=1.0, outcome="done", attempts=1):
-    return {"action": list(action), "outcome": outcome, "attempts": attempts, "times": {"execution": time}}
+    times = Times(execution=time)
+    return Performed(step=1, action=list(action), origin="plan", outcome=outcome, attempts=attempts, times=times)
 
 
 def test_an_episode_counts_as_far_as_it_went_as_planned():
@@ -36,7 +38,7 @@ def test_an_episode_counts_as_far_as_it_went_as_planned():
         row("pick", "a", "tray", outcome="slip"),
         row("pick", "a", "tray"),
     ]
-    found = list(durations({"actions": rows}, scoop(), PLACES))
+    found = list(durations(rows, scoop(), PLACES))
     assert [(d.kind, d.seconds) for d in found] == [("topple", 3.0), ("pick", 1.0), ("place", 2.0), ("carry", 5.0)]
     assert [d.travel for d in found] == pytest.approx([0.0, 0.0, 0.2, 1.0])
 

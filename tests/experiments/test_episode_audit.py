@@ -11,19 +11,34 @@ from smash.execution.scene.scene_file import read_scene
 from smash.experiments.episodes.asked import asked_runs, note_asked
 from smash.experiments.episodes.audit import audit_episodes
 from tests.analysis.made_up import record as made_up_run
-from tests.analysis.test_export import PLAN, WHOLE
+from tests.analysis.test_export import PLAN
 
 DONE = {"outcome": "done", "reason": None, "attempts": 1, "gap": False, "repaired": False, "begun": 0.1}
 TIMES = {"offline": 1.0, "offline_cpu": 0.5, "online": 2.0, "online_cpu": 0.2, "execution": 9.0}
-RUN = made_up_run(0, [(0.1, 3)], **WHOLE, actions=PLAN)
+SETTING = {
+    **{"format": "smash-episode/1", "instance": "i0", "planner": "p", "topple": True, "max_topple": None},
+    **{"scene": "default", "seed": 0, "replanning": False, "final": {"piles": {}, "table": []}},
+}
+RUN = made_up_run(0, [(0.1, 3)], actions=PLAN).document
 
 
 def episode(success=True, failure=None):
     actions = [
         {"step": n, "action": action, "origin": "plan", **DONE, "times": TIMES} for n, action in enumerate(PLAN, 1)
     ]
-    numbers = {"actions_executed": 3, "replans": 0, "retries": 1}
-    return {"success": success, "failure": failure, **numbers, "actions": actions, "times": TIMES | {"task": 0.0}}
+    numbers = {"plan_cost": 3, "actions_executed": 3, "replans": 0, "retries": 1}
+    return {
+        **SETTING,
+        "success": success,
+        "failure": failure,
+        **numbers,
+        "actions": actions,
+        "times": TIMES | {"task": 0.0},
+    }
+
+
+def failure(reason):
+    return {"name": "slip", "reason": reason, "step": 2, "action": PLAN[1]}
 
 
 def record(seed, policy="open", **more):
@@ -47,7 +62,7 @@ def record(seed, policy="open", **more):
         "started": "2026-01-01T00:00:00.000+00:00",
         "load_average": [0.1, 0.2],
         "commit": {"hash": "c", "dirty": False},
-        "machine": WHOLE["machine"],
+        "machine": RUN["machine"],
         "versions": {"pybullet": "3"},
         **more,
     }
@@ -74,9 +89,9 @@ def test_sound_episodes_are_well(findings):
     ("fields", "finding"),
     [
         ({"episode": None}, "unexplained: line 2 (p on multi-9/i0, topple, open, seed 1): no end, without a reason"),
-        ({"episode": episode(False, {"name": "slip", "reason": " "})}, "unexplained: line 2"),
+        ({"episode": episode(False, failure(" "))}, "unexplained: line 2"),
         ({"episode": episode(False)}, "unexplained: line 2"),
-        ({"episode": episode(True, {"name": "slip", "reason": "x"})}, "unexplained: line 2"),
+        ({"episode": episode(True, failure("x"))}, "unexplained: line 2"),
         ({"commit": {"hash": "d", "dirty": False}}, "mixed commits"),
         ({"versions": {"pybullet": "2"}}, "mixed versions: pybullet"),
         ({"run": "another"}, "no plan: line 2"),
@@ -91,7 +106,7 @@ def test_what_is_wrong_is_one_line_each(findings, fields, finding):
 
 
 def test_a_failure_and_a_crash_with_a_reason_are_explained(findings):
-    failed = episode(False, {"name": "slip", "reason": "it fell", "step": 2, "action": PLAN[1]})
+    failed = episode(False, failure("it fell"))
     assert findings(record(0, episode=failed), record(1, episode=None, problem="killed")) == []
 
 
@@ -124,7 +139,7 @@ def test_where_nothing_was_carried_out_nothing_is_asked(tmp_path):
 
 
 def test_an_episode_and_an_action_are_a_row_each(findings, tmp_path):
-    failed = episode(False, {"name": "slip", "reason": "it fell", "step": 2, "action": PLAN[1]})
+    failed = episode(False, failure("it fell"))
     findings(record(0, episode=failed), record(1, episode=None, problem="killed"))
     ended = CliRunner().invoke(smash, ["records", "export", str(tmp_path), "--out", str(tmp_path / "out")])
     assert ended.exit_code == 0, ended.output

@@ -12,12 +12,13 @@ import msgspec
 import psutil
 import pytest
 
-from smash.execution.episode import Episode
-from smash.experiments.episodes.episodes import EPISODES, episode_runs, target_depth
+from smash.experiments.episodes.series import episode_runs, target_depth
 from smash.experiments.episodes.worker import EpisodeLost, EpisodeWorker
 from smash.problem import PositionsGoal, make_instance
 from smash.problem.errors import SmashError
 from smash.problem.extras import is_there
+from smash.records.episodes import Episode
+from smash.records.files import EPISODES
 from tests.execution.episodes import swapped_pair
 
 simulated = pytest.mark.skipif(not is_there("pybullet"), reason="pybullet is not installed (the extra execution)")
@@ -59,21 +60,20 @@ def test_every_plan_is_carried_out_once_and_kept(results):
 @simulated
 def test_a_process_that_dies_costs_one_episode_and_the_next_is_the_same_as_alone(results):
     run = episode_runs(results, [1], ["open"])[0]
-    question = {"record": run.record, "seed": run.seed, "policy": run.policy, "scene": run.scene}
     worker = EpisodeWorker()
     try:
-        first = worker.ask(question)
-        again = worker.ask(question)
-        with pytest.raises(EpisodeLost, match="KeyError"):
+        first = worker.ask(run)
+        again = worker.ask(run)
+        with pytest.raises(EpisodeLost, match="missing required field"):
             worker.ask({})
-        afresh = worker.ask(question)
+        afresh = worker.ask(run)
     finally:
         worker.close()
     assert unmeasured(first) == unmeasured(again) == unmeasured(afresh)
 
 
 def unmeasured(episode):
-    return msgspec.convert(episode, Episode).without_measured_times()
+    return episode.without_measured_times()
 
 
 def test_only_plans_of_the_named_planner_are_carried_out(results):
@@ -104,10 +104,10 @@ def test_depth_counts_from_the_top():
 def determined(results):
     """What the seeds determine of every episode, by its key."""
     found = {}
-    for line in (results / EPISODES).read_text().splitlines():
+    for line in (results / EPISODES.name).read_text().splitlines():
         record = json.loads(line)
         assert record["key"] not in found
-        found[record["key"]] = unmeasured(record["episode"])
+        found[record["key"]] = unmeasured(msgspec.convert(record["episode"], Episode))
     return found
 
 
@@ -137,8 +137,8 @@ def test_killed_at_random_moments_no_episode_is_lost_or_repeated(results, tmp_pa
         time.sleep(chance.uniform(1.0, 12.0))
         running.send_signal(signal.SIGKILL)
         running.wait()
-        assert not psutil.wait_procs(alive(str(tmp_path)), timeout=5)[1]
-        text = (disturbed / EPISODES).read_text() if (disturbed / EPISODES).exists() else ""
+        assert not psutil.wait_procs(alive(str(tmp_path)), timeout=60)[1]
+        text = (disturbed / EPISODES.name).read_text() if (disturbed / EPISODES.name).exists() else ""
         now = [line for line in text.splitlines(keepends=True) if line.endswith("\n")]
         assert now[: len(seen)] == seen
         seen = now
@@ -147,7 +147,7 @@ def test_killed_at_random_moments_no_episode_is_lost_or_repeated(results, tmp_pa
             [sys.executable, "-m", "smash", "episodes", str(folder), *more], stderr=subprocess.PIPE, text=True
         )
         assert ended.returncode == 0, ended.stderr
-    assert (disturbed / EPISODES).read_text().startswith("".join(seen))
+    assert (disturbed / EPISODES.name).read_text().startswith("".join(seen))
     made = determined(disturbed)
     assert len(made) == 12
     assert made == determined(undisturbed)
@@ -155,10 +155,10 @@ def test_killed_at_random_moments_no_episode_is_lost_or_repeated(results, tmp_pa
 
 @simulated
 def test_a_damaged_last_episode_is_set_aside_and_carried_out_again(results, tmp_path):
-    for name in ("runs.jsonl", EPISODES):
+    for name in ("runs.jsonl", EPISODES.name):
         shutil.copyfile(results / name, tmp_path / name)
-    whole = (tmp_path / EPISODES).read_bytes()
-    (tmp_path / EPISODES).write_bytes(whole[:-50])
+    whole = (tmp_path / EPISODES.name).read_bytes()
+    (tmp_path / EPISODES.name).write_bytes(whole[:-50])
     ended = smash("episodes", tmp_path, "--policy", "open", "--policy", "replan", "--dry-run")
     assert "was damaged: set aside, its episode is carried out again" in ended.stderr
     assert "2 episodes, 1 left" in ended.stderr
@@ -175,6 +175,6 @@ def test_an_interrupted_one_ends_at_once_and_keeps_what_had_ended(results, tmp_p
     assert "1 episodes, 1 left" in said
     time.sleep(0.5)
     running.send_signal(signal.SIGINT)
-    _, said = running.communicate(timeout=30)
+    _, said = running.communicate(timeout=100)
     assert running.returncode == 130
     assert "start again" in said.splitlines()[-1]

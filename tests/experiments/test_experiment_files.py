@@ -4,7 +4,8 @@ import pytest
 
 from smash.experiments.sweeps.experiment import experiment_runs, read_experiment
 from smash.problem import MalformedFile
-from smash.problem.sets.suites import read_suite, with_buffers
+from smash.problem.buffers import with_buffers
+from smash.problem.sets.suites import read_suite
 
 GOOD = """
 name = "try"

@@ -14,20 +14,24 @@ import pytest
 
 from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import Job
-from smash.planners.protocol import SolveOptions
+from smash.planners.protocol import Settings
+from smash.problem import PlanOptions
 from smash.problem.errors import SmashError
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import plan_from_document, plan_text
+from smash.problem.problem import Problem
 
 pytestmark = pytest.mark.usefixtures("third_party")
 
 
+def problem(file, topple=True):
+    return Problem(read_instance(file), PlanOptions(topple))
+
+
 @pytest.fixture
 def run(tower_file):
-    def call(planner, budget=5.0, memory=2048, topple=True, **more):
-        return run_isolated(
-            Job(planner, read_instance(tower_file), SolveOptions(topple=topple), budget, memory), **more
-        )
+    def call(planner, budget=60.0, memory=2048, topple=True, **more):
+        return run_isolated(Job(planner, problem(tower_file, topple), Settings(), budget, memory), **more)
 
     return call
 
@@ -63,17 +67,16 @@ def alive(monkeypatch, tmp_path):
 
 
 def test_incumbents_arrive_as_they_are_found_and_times_to_come_are_replaced(run):
-    heard = []
+    heard, began = [], time.monotonic()
     report = run("sound", on_incumbent=lambda seconds, cost, actions: heard.append((seconds, cost)))
     assert [cost for _, cost in heard] == [9, 5, 3]
     assert heard[0][0] == 0.0
-    assert 0.1 < heard[1][0] < heard[2][0] < 5
+    assert 0.0 < heard[1][0] < heard[2][0] <= time.monotonic() - began
     assert (report.outcome, report.status, len(report.actions), report.lower_bound) == ("optimal", "optimal", 3, 3)
     assert report.incumbents[-1].origin == "engine"
     assert report.details == {"nodes": 7}
     assert report.verdict.accepted
     assert report.memory_mib > 1
-    assert report.wall_seconds < 5
 
 
 def test_a_plan_that_was_never_streamed_counts_from_the_end_of_the_call(run):
@@ -120,17 +123,21 @@ def test_a_planner_that_prints_disturbs_nothing(run):
     assert "more noise" in report.log
 
 
-def test_a_hang_is_stopped_within_its_grace_and_keeps_its_plan(run, alive):
-    report = run("hangs-with-plan", budget=0.3)
-    assert 0.3 + 0.5 <= report.wall_seconds < 0.3 + 0.5 + 1.0
+def test_a_hang_is_stopped_and_keeps_its_plan(run, alive):
+    report = run("hangs-with-plan", budget=1.0)
     assert (report.outcome, report.status, report.exit_code) == ("over-budget", "feasible", 0)
     assert not alive()
 
 
+@pytest.mark.timing
+def test_a_hang_is_stopped_when_its_grace_is_over(run):
+    assert 0.3 + 0.5 <= run("hangs-with-plan", budget=0.3).wall_seconds < 0.3 + 0.5 + 1.0
+
+
 @pytest.mark.parametrize(("topple", "status", "cost"), [(True, "feasible", 5), (False, "unknown", None)])
 def test_a_hang_keeps_the_best_bound_that_it_had_proven(run, tower_file, topple, status, cost):
-    report = run("hangs-with-bounds", budget=0.3, topple=topple)
-    job = Job("hangs-with-bounds", read_instance(tower_file), SolveOptions(topple=topple), 0.3)
+    report = run("hangs-with-bounds", budget=1.0, topple=topple)
+    job = Job("hangs-with-bounds", problem(tower_file, topple), Settings(), 1.0)
     filed = plan_from_document(json.loads(plan_text(report.plan(job))))
     assert report.outcome == "over-budget"
     assert (filed.status, filed.cost) == (status, cost)
@@ -138,12 +145,12 @@ def test_a_hang_keeps_the_best_bound_that_it_had_proven(run, tower_file, topple,
 
 
 def test_a_hang_whose_plan_meets_its_bound_is_proven_all_the_same(run):
-    report = run("hangs-proven", budget=0.2)
+    report = run("hangs-proven", budget=1.0)
     assert (report.outcome, report.status, report.lower_bound, report.exit_code) == ("over-budget", "optimal", 5, 0)
 
 
 def test_a_streamed_bound_above_a_legal_plan_is_refused(run):
-    report = run("hangs-after-boasting", budget=0.2)
+    report = run("hangs-after-boasting", budget=1.0)
     assert report.outcome == "refused"
     assert "lower bound 6" in report.reason
     assert report.lower_bound is None
@@ -164,7 +171,7 @@ def test_a_busy_hang_without_a_plan_is_budget_spent(run):
 
 @pytest.mark.parametrize("planner", ["eats-memory", "eats-memory-in-a-child"])
 def test_memory_is_watched_over_the_whole_tree(run, planner, alive):
-    report = run(planner, memory=300, budget=20)
+    report = run(planner, memory=300)
     assert report.outcome == "memory"
     assert report.memory_mib > 300
     assert not alive()
@@ -182,7 +189,7 @@ def test_stopping_a_run_keeps_its_plan_and_leaves_no_process(run, alive):
     assert not alive()
 
 
-def wait_until(condition, seconds=10.0):
+def wait_until(condition, seconds=100.0):
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         if condition():
@@ -208,7 +215,7 @@ def test_nothing_survives_a_guardian_killed_with_sigkill(alive, tower_file):
     )
     assert wait_until(lambda: len(alive()) >= 5)
     psutil.Process(caller.pid).children()[0].kill()
-    assert caller.wait(10) == 7
+    assert caller.wait(100) == 7
     assert not alive()
 
 
@@ -217,10 +224,9 @@ def test_an_interrupted_plan_command_writes_what_was_found(alive, tower_file, tm
     out = tmp_path / "plan.json"
     command = [sys.executable, "-m", "smash", "plan", tower_file, "--planner", "leaves-children", "--out", out]
     caller = subprocess.Popen(list(map(str, command)), stderr=subprocess.PIPE, text=True)
-    assert wait_until(lambda: len(alive()) >= 5)
-    time.sleep(0.3)
+    assert wait_until(lambda: len(alive()) >= 6)
     caller.send_signal(number)
-    _, said = caller.communicate(timeout=20)
+    _, said = caller.communicate(timeout=100)
     assert caller.returncode == 130
     assert said.count("\n") == 1
     assert '"cost": 5' in out.read_text()
@@ -231,10 +237,9 @@ def test_an_interrupted_plan_command_without_a_plan_writes_its_bound(alive, towe
     out = tmp_path / "plan.json"
     command = [sys.executable, "-m", "smash", "plan", tower_file, "--planner", "hangs-with-bounds", "--no-topple"]
     caller = subprocess.Popen([*map(str, command), "--out", str(out)], stderr=subprocess.PIPE, text=True)
-    assert wait_until(lambda: len(alive()) >= 3)
-    time.sleep(1.0)
+    assert wait_until(lambda: len(alive()) >= 4)
     caller.send_signal(signal.SIGINT)
-    _, said = caller.communicate(timeout=20)
+    _, said = caller.communicate(timeout=100)
     assert caller.returncode == 130
     assert "without a plan; none is cheaper than 3" in said
     document = json.loads(out.read_text())
@@ -243,6 +248,6 @@ def test_an_interrupted_plan_command_without_a_plan_writes_its_bound(alive, towe
 
 
 def test_an_unknown_warm_start_is_a_wrong_flag(tower_file):
-    job = Job("smash-layered", read_instance(tower_file), SolveOptions(warm_start="nobody"), 5.0)
+    job = Job("smash-layered", problem(tower_file), Settings(warm_start="nobody"), 5.0)
     with pytest.raises(SmashError, match="no planner is called 'nobody'"):
         run_isolated(job)

@@ -1,4 +1,4 @@
-"""A reproduction: each step once, continued after a kill, made anew where its inputs have changed, with a manifest."""
+"""A reproduction: each stage once, continued after a kill, made anew where its inputs have changed, with a manifest."""
 
 import json
 import re
@@ -14,8 +14,9 @@ import pytest
 from click.testing import CliRunner
 
 from smash.cli import smash
+from smash.experiments.reproduction.code import ANALYSIS, EVERYTHING, PLANNING, ROOMS, _files, _said, rooms_of
 from smash.experiments.reproduction.reproduce import STALE
-from smash.experiments.reproduction.stages import file_hash, read_steps
+from smash.experiments.reproduction.stages import file_hash, read_stages
 from smash.problem import MalformedFile
 
 ROOT = Path(__file__).parents[2]
@@ -32,7 +33,7 @@ for word in words:
 """A command that makes each file that is not there yet, and notes what it was asked for."""
 
 
-def step(name, words, more=""):
+def stage(name, words, more=""):
     command = f"python {{here}}/note.py {{out}}/{name} {words}"
     return f"""[[steps]]
 name = "{name}"
@@ -45,8 +46,8 @@ products = ["{name}/*"]
 
 
 @pytest.fixture
-def steps(tmp_path):
-    """Write a list of steps; return its file."""
+def stages(tmp_path):
+    """Write a list of stages; return its file."""
 
     def write(*parts):
         (tmp_path / "note.py").write_text(NOTE)
@@ -68,17 +69,20 @@ class Ended(NamedTuple):
 
 
 def reproduce(file, out, *more):
-    """Run the command in this process (its steps have processes of their own)."""
+    """Run the command in this process (its stages have processes of their own)."""
     ended = CliRunner().invoke(smash, [*command(file, out, *more)[3:]])
     code = getattr(ended.exception, "exit_code", ended.exit_code)
     return Ended(code, ended.stdout, str(ended.exception or ""))
 
 
-def test_a_second_run_does_nothing_and_says_so(steps, tmp_path):
-    file, out = steps(step("one", "a"), step("two", "b", 'after = ["one"]\nleaves_out = "the rest"')), tmp_path / "out"
+def test_a_second_run_does_nothing_and_says_so(stages, tmp_path):
+    file, out = (
+        stages(stage("one", "a"), stage("two", "b", 'after = ["one"]\nleaves_out = "the rest"')),
+        tmp_path / "out",
+    )
     first = reproduce(file, out)
     assert first.returncode == 0, first.error
-    assert "2 of 2 steps to do" in first.stdout
+    assert "2 of 2 stages to do" in first.stdout
     page = (out / "MANIFEST.md").read_text()
     again = reproduce(file, out)
     assert "nothing to do" in again.stdout
@@ -86,8 +90,8 @@ def test_a_second_run_does_nothing_and_says_so(steps, tmp_path):
     assert (out / "MANIFEST.md").read_text() == page
 
 
-def test_the_manifest_says_what_was_run_where_and_what_came_out(steps, tmp_path):
-    file, out = steps(step("one", "a", 'leaves_out = "the rest, for time"')), tmp_path / "out"
+def test_the_manifest_says_what_was_run_where_and_what_came_out(stages, tmp_path):
+    file, out = stages(stage("one", "a", 'leaves_out = "the rest, for time"')), tmp_path / "out"
     assert reproduce(file, out, "--copy-to", tmp_path / "copy").returncode == 0
     document = json.loads((out / "manifest.json").read_text())
     (made,) = document["steps"]
@@ -104,10 +108,10 @@ def test_the_manifest_says_what_was_run_where_and_what_came_out(steps, tmp_path)
     assert (tmp_path / "copy" / "MANIFEST.md").read_text() == page
 
 
-def test_a_changed_input_makes_its_step_and_those_after_it_anew(steps, tmp_path):
-    file, out = steps(step("one", "a"), step("two", "b", 'after = ["one"]')), tmp_path / "out"
+def test_a_changed_input_makes_its_stage_and_those_after_it_anew(stages, tmp_path):
+    file, out = stages(stage("one", "a"), stage("two", "b", 'after = ["one"]')), tmp_path / "out"
     reproduce(file, out)
-    steps(step("one", "a c"), step("two", "b", 'after = ["one"]'))
+    stages(stage("one", "a c"), stage("two", "b", 'after = ["one"]'))
     planned = reproduce(file, out, "--dry-run").stdout
     assert planned.count("stale") == 2
     assert "its commands have changed" in planned
@@ -121,15 +125,46 @@ def test_a_changed_input_makes_its_step_and_those_after_it_anew(steps, tmp_path)
     assert "nothing to do" in reproduce(file, out).stdout
 
 
-def test_a_file_that_a_command_names_is_an_input(steps, tmp_path):
-    file, out = steps(step("one", "a")), tmp_path / "out"
+def test_a_stage_depends_on_the_rooms_that_its_commands_run():
+    assert rooms_of(["python -m smash_analysis.ablation {out}/a --out {out}/a"]) == ANALYSIS
+    assert rooms_of(["smash  sweep x.toml"]) == PLANNING
+    assert rooms_of(["smash sweep x.toml", "smash report {out}"]) >= PLANNING | ANALYSIS
+    assert not any("execution" in room or "motion" in room for room in PLANNING | ANALYSIS)
+    assert rooms_of(["smash episodes {out}"]) == rooms_of(["python {here}/mine.py"]) == EVERYTHING
+    assert rooms_of(["python -m smash_analysis_of_mine"]) == EVERYTHING
+
+
+def test_every_room_is_there_and_none_is_forgotten():
+    for rooms in (ANALYSIS, PLANNING, EVERYTHING, *ROOMS.values()):
+        assert all(list(_files(frozenset({room}))) for room in rooms)
+    parts = {name for name, _ in _files(PLANNING | ANALYSIS)}
+    assert parts < {name for name, _ in _files(EVERYTHING)}
+    assert {"domains/pick-and-place.pddl", "smash_analysis/report/templates/page.html"} <= parts
+
+
+@pytest.mark.parametrize(
+    ("text", "same"),
+    [
+        ('"""Other words."""\n\ndef f(x):\n    """Of it."""\n    # a comment\n    return (x\n        + 1)\n', True),
+        ("def f(x):\n    return x + 2\n", False),
+    ],
+)
+def test_what_a_program_says_counts_and_not_how_it_is_laid_out(tmp_path, text, same):
+    first, second = tmp_path / "first.py", tmp_path / "second.py"
+    first.write_text('"""Words."""\n\n\ndef f(x):\n    return x + 1\n')
+    second.write_text(text)
+    assert (_said(first) == _said(second)) == same
+
+
+def test_a_file_that_a_command_names_is_an_input(stages, tmp_path):
+    file, out = stages(stage("one", "a")), tmp_path / "out"
     reproduce(file, out)
     (tmp_path / "note.py").write_text(NOTE + "\n# changed")
     assert "note.py has changed" in reproduce(file, out, "--dry-run").stdout
 
 
-def test_a_missing_product_is_made_again_and_a_changed_one_from_nothing(steps, tmp_path):
-    file, out = steps(step("one", "a b")), tmp_path / "out"
+def test_a_missing_product_is_made_again_and_a_changed_one_from_nothing(stages, tmp_path):
+    file, out = stages(stage("one", "a b")), tmp_path / "out"
     reproduce(file, out)
     (out / "one" / "a").unlink()
     reproduce(file, out)
@@ -140,15 +175,15 @@ def test_a_missing_product_is_made_again_and_a_changed_one_from_nothing(steps, t
     assert (out / "one" / "b").read_text() == "b"
 
 
-def test_a_killed_step_is_continued_and_nothing_of_it_lives_on(steps, tmp_path):
-    file, out = steps(step("one", "a slow b"), step("two", "c")), tmp_path / "out"
+def test_a_killed_stage_is_continued_and_nothing_of_it_lives_on(stages, tmp_path):
+    file, out = stages(stage("one", "a slow b"), stage("two", "c")), tmp_path / "out"
     running = subprocess.Popen(command(file, out), stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
     while not (out / "one" / "a").exists():
         time.sleep(0.01)
     below = psutil.Process(running.pid).children(recursive=True)
     running.send_signal(signal.SIGKILL)
     running.wait()
-    assert psutil.wait_procs(below, timeout=5)[1] == []
+    assert psutil.wait_procs(below, timeout=60)[1] == []
     planned = reproduce(file, out, "--dry-run").stdout
     assert "continued" in planned
     assert "it was killed" in planned
@@ -158,36 +193,36 @@ def test_a_killed_step_is_continued_and_nothing_of_it_lives_on(steps, tmp_path):
     assert "nothing to do" in reproduce(file, out).stdout
 
 
-def test_an_interrupted_one_says_so_and_writes_what_it_has(steps, tmp_path):
-    file, out = steps(step("one", "a"), step("two", "slow " * 40)), tmp_path / "out"
+def test_an_interrupted_one_says_so_and_writes_what_it_has(stages, tmp_path):
+    file, out = stages(stage("one", "a"), stage("two", "slow " * 40)), tmp_path / "out"
     running = subprocess.Popen(command(file, out), stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
     while not (out / "two").exists():
         time.sleep(0.01)
     running.send_signal(signal.SIGINT)
-    _, said = running.communicate(timeout=20)
+    _, said = running.communicate(timeout=100)
     assert running.returncode == 130
     assert said.splitlines()[-1] == "smash: interrupted; start again to go on"
     assert [made["state"] for made in json.loads((out / "manifest.json").read_text())["steps"]] == ["run", "not run"]
 
 
-def test_a_step_that_fails_is_named_and_stops_only_those_that_have_nothing_without_it(steps, tmp_path):
-    bad = step("bad", "a").replace("python {here}", "python {here}/nowhere")
-    file = steps(bad, step("after", "b", 'after = ["bad"]'), step("apart", "c"), step("lacks", "d", LACKS))
+def test_a_stage_that_fails_is_named_and_stops_only_those_that_have_nothing_without_it(stages, tmp_path):
+    bad = stage("bad", "a").replace("python {here}", "python {here}/nowhere")
+    file = stages(bad, stage("after", "b", 'after = ["bad"]'), stage("apart", "c"), stage("lacks", "d", LACKS))
     ended = reproduce(file, tmp_path / "out")
     assert ended.returncode == 2
-    assert ended.error.startswith("step bad: `python {here}/nowhere")
+    assert ended.error.startswith("stage bad: `python {here}/nowhere")
     states = {made["name"]: made for made in json.loads((tmp_path / "out" / "manifest.json").read_text())["steps"]}
     assert [made["state"] for made in states.values()] == ["failed", "not run", "run", "not run"]
     assert states["after"]["why"] == "there is nothing of bad"
     assert states["lacks"]["why"] == "not installed: no-such-package"
 
 
-def test_a_step_after_several_uses_those_that_there_are(steps, tmp_path):
-    bad = step("bad", "a").replace("python {here}", "python {here}/nowhere")
-    file = steps(bad, step("good", "b"), step("after", "c", 'after = ["bad", "good"]'))
+def test_a_stage_after_several_uses_those_that_there_are(stages, tmp_path):
+    bad = stage("bad", "a").replace("python {here}", "python {here}/nowhere")
+    file = stages(bad, stage("good", "b"), stage("after", "c", 'after = ["bad", "good"]'))
     assert reproduce(file, tmp_path / "out").returncode == 2
     assert (tmp_path / "out" / "after" / "c").exists()
-    steps(step("bad", "a"), step("good", "b"), step("after", "c", 'after = ["bad", "good"]'))
+    stages(stage("bad", "a"), stage("good", "b"), stage("after", "c", 'after = ["bad", "good"]'))
     assert reproduce(file, tmp_path / "out").returncode == 0
     assert (tmp_path / "out" / STALE / "after-1").exists()
     assert "nothing to do" in reproduce(file, tmp_path / "out").stdout
@@ -199,35 +234,35 @@ LACKS = 'requires = ["no-such-package"]'
 @pytest.mark.parametrize(
     ("part", "problem"),
     [
-        (step("../one", "a"), "steps[0].name"),
-        (step("logs", "a"), "steps[0].name"),
-        (step("one", "a") * 2, "stands twice"),
-        (step("one", "a", 'after = ["two"]'), "no earlier step"),
-        (step("one", "a").replace("python", "rm"), "does not begin with smash or python"),
-        (step("one", "a").replace('"one/*"', '"../*"'), "does not lie in the step's folder"),
-        (step("one", "a").replace("minutes = 0.1", ""), "minutes"),
+        (stage("../one", "a"), "steps[0].name"),
+        (stage("logs", "a"), "steps[0].name"),
+        (stage("one", "a") * 2, "stands twice"),
+        (stage("one", "a", 'after = ["two"]'), "no earlier stage"),
+        (stage("one", "a").replace("python", "rm"), "does not begin with smash or python"),
+        (stage("one", "a").replace('"one/*"', '"../*"'), "does not lie in the stage's folder"),
+        (stage("one", "a").replace("minutes = 0.1", ""), "minutes"),
         ("", "steps"),
     ],
 )
-def test_a_bad_list_is_refused_in_one_line(steps, tmp_path, part, problem):
+def test_a_bad_list_is_refused_in_one_line(stages, tmp_path, part, problem):
     with pytest.raises(MalformedFile, match=re.escape(problem)):
-        read_steps(steps(part))
+        read_stages(stages(part))
 
 
 @pytest.mark.parametrize("name", ["reproduce", "reproduce-full"])
 def test_the_committed_lists_name_files_that_are_there(name):
-    steps = read_steps(ROOT / "experiments" / f"{name}.toml")
-    assert steps.name == name
-    named = [word for step in steps.steps for command in step.commands for word in command.split()]
+    stages = read_stages(ROOT / "experiments" / f"{name}.toml")
+    assert stages.name == name
+    named = [word for stage in stages.stages for command in stage.commands for word in command.split()]
     assert all((ROOT / "experiments" / word[7:]).is_file() for word in named if word.startswith("{here}/"))
 
 
 def test_the_small_grid_is_said_to_take_at_most_ninety_minutes():
-    assert sum(step.minutes for step in read_steps(ROOT / "experiments" / "reproduce.toml").steps) <= 90
+    assert sum(stage.minutes for stage in read_stages(ROOT / "experiments" / "reproduce.toml").stages) <= 90
 
 
 @pytest.mark.slow
-def test_real_steps_from_sweep_to_figures(tmp_path):
+def test_real_stages_from_sweep_to_figures(tmp_path):
     (tmp_path / "few.toml").write_text(
         'name = "few"\nsuites = ["multi-4"]\ninstances = 2\nbuffers = [0, 2]\nbudgets = [0.5, 1]\ncutoff_sample = 1\n'
         '[[planners]]\nname = "smash-layered"\n'

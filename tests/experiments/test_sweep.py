@@ -12,9 +12,10 @@ from contextlib import suppress
 import psutil
 import pytest
 
-from smash.experiments.sweeps.records import DAMAGED, RUNS, Records
 from smash.problem import MalformedFile
+from smash.records.files import RUNS
 from smash.records.locking import InUse
+from smash.records.writing import Writer
 from tests.experiments.tables import tables
 
 pytestmark = pytest.mark.usefixtures("third_party")
@@ -48,11 +49,11 @@ def sweep(file, out, *more):
 
 
 def records(out):
-    return [json.loads(line) for line in (out / RUNS).read_text().splitlines()]
+    return [json.loads(line) for line in (out / RUNS.name).read_text().splitlines()]
 
 
 def whole_lines(out):
-    text = (out / RUNS).read_text() if (out / RUNS).exists() else ""
+    text = (out / RUNS.name).read_text() if (out / RUNS.name).exists() else ""
     return {line for line in text.splitlines(keepends=True) if line.endswith("\n")}
 
 
@@ -135,10 +136,10 @@ def test_killed_at_random_moments_it_loses_nothing_and_repeats_nothing(experimen
 def test_an_interrupted_sweep_says_so_and_goes_on_later(experiment, tmp_path):
     file, out = experiment(["hangs"], count=4), tmp_path / "out"
     running = subprocess.Popen(command(file, out), stderr=subprocess.PIPE, text=True)
-    while not ((out / RUNS).exists() and (out / RUNS).read_text()):
+    while not ((out / RUNS.name).exists() and (out / RUNS.name).read_text()):
         time.sleep(0.05)
     running.send_signal(signal.SIGINT)
-    _, said = running.communicate(timeout=20)
+    _, said = running.communicate(timeout=100)
     assert running.returncode == 130
     assert "start again" in said.splitlines()[-1]
     assert 1 <= len(records(out)) < 4
@@ -147,25 +148,25 @@ def test_an_interrupted_sweep_says_so_and_goes_on_later(experiment, tmp_path):
 def test_a_damaged_last_line_is_set_aside_and_its_run_done_again(experiment, tmp_path):
     file, out = experiment(["bare"], count=2), tmp_path / "out"
     sweep(file, out)
-    whole = (out / RUNS).read_bytes()
-    (out / RUNS).write_bytes(whole[:-40])
+    whole = (out / RUNS.name).read_bytes()
+    (out / RUNS.name).write_bytes(whole[:-40])
     ended = sweep(file, out)
     assert "damaged: set aside" in ended.stderr
     assert "1 of 2 runs were finished before" in ended.stderr
     assert len(records(out)) == 2
-    assert (out / DAMAGED).read_bytes().strip() in whole
+    assert (out / "runs.damaged").read_bytes().strip() in whole
 
 
 def test_damage_elsewhere_is_refused_with_its_line(tmp_path):
-    (tmp_path / RUNS).write_text('{"half\n{"format": "smash-run/1", "key": "a"}\n')
+    (tmp_path / RUNS.name).write_text('{"half\n{"format": "smash-run/1", "key": "a"}\n')
     with pytest.raises(MalformedFile, match=r"runs\.jsonl:1"):
-        Records(tmp_path)
+        Writer(tmp_path, RUNS)
 
 
 def test_two_sweeps_on_one_directory_are_refused(experiment, tmp_path):
-    with Records(tmp_path / "out"):
+    with Writer(tmp_path / "out", RUNS):
         with pytest.raises(InUse):
-            Records(tmp_path / "out")
+            Writer(tmp_path / "out", RUNS)
         ended = sweep(experiment(["bare"]), tmp_path / "out")
     assert ended.returncode == 2
     assert ended.stderr.count("\n") == 1

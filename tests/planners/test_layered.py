@@ -13,7 +13,6 @@ from smash.planners.layered.resting import build_resting
 from smash.planners.milp.arrays import OutOfTime
 from smash.planners.protocol import SolveOptions
 from smash.problem import Law
-from smash.problem.sets.generators import generate
 from smash.problem.sets.suites import read_suite
 from tests.oracle import optimal_cost
 from tests.strategies import instances, plan_options
@@ -99,11 +98,3 @@ def test_what_takes_too_long_to_build_is_left_out(monkeypatch):
     result = solve(read_suite("multi-6")[0], SolveOptions())
     assert {stage["skipped"] for stage in result.details["stages"]} == {"took too long to build"}
     assert (result.status, result.lower_bound) == ("unknown", 2 * 6)
-
-
-def test_forty_blocks_keep_a_short_budget():
-    instance = generate("multi", 40, buffers=2, seed=5)[0]
-    LayeredPlanner().prepare()
-    started = perf_counter()
-    solve(instance, SolveOptions(topple=False), budget=2.0)
-    assert perf_counter() - started < 2.5

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from smash.planners.layered import LayeredPlanner
 from smash.planners.layered.family.relaxed import build_relaxed
 from smash.planners.milp.solvers import highs
-from smash.planners.protocol import SolveOptions, why_unsupported
+from smash.planners.protocol import Settings, SolveOptions, why_unsupported
 from smash.problem import (
     Carry,
     Costs,
@@ -22,6 +22,7 @@ from smash.problem import (
     make_instance,
 )
 from smash.problem.files.instances import read_instance
+from smash.problem.problem import Problem
 from smash.problem.views.demands import demands_of
 from tests.cheapest import cheapest_plan
 from tests.strategies import family_instances, family_options
@@ -136,4 +137,4 @@ def test_a_horizon_that_is_too_short_proves_nothing():
 
 
 def test_it_takes_the_whole_family():
-    assert why_unsupported(LayeredPlanner(), read_instance(SCOOP), SolveOptions()) is None
+    assert why_unsupported(LayeredPlanner(), Problem(read_instance(SCOOP)), Settings()) is None

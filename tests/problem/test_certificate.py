@@ -25,22 +25,22 @@ from smash.problem import (
     write_plan,
 )
 from smash.problem.certificate import ONE, Cases, Certificate, Leaf, RefusedCertificate, certificate_text, proven_bound
-from smash.problem.feasibility import why_infeasible
+from smash.problem.problem import Problem
+from tests.arrangements import wide
 from tests.oracle import optimal_cost
-from tests.planners.test_precedence import wide
 from tests.strategies import instances, plan_options
 
 
 def certificate_of(instance, options, seconds=20.0):
     """Return the certificate as it is read back from its file."""
-    text = certificate_text(certify(instance, options, perf_counter() + seconds))
+    text = certificate_text(certify(Problem(instance, options), perf_counter() + seconds))
     return msgspec.json.decode(text, type=Certificate)
 
 
 @settings(max_examples=80, deadline=None)
 @given(instances(max_blocks=7), plan_options())
 def test_the_certificate_proves_the_planners_bound(instance, options):
-    if why_infeasible(instance, options) is not None:
+    if Problem(instance, options).infeasible is not None:
         return
     result = PrecedencePlanner().solve(instance, SolveOptions(options.topple, options.max_topple), 10.0)
     assert proven_bound(instance, options, certificate_of(instance, options)) == result.lower_bound

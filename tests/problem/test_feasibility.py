@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 
 from smash.problem import OnGoal, PlanOptions, PositionsGoal, StacksGoal, make_instance
-from smash.problem.feasibility import why_infeasible
+from smash.problem.problem import Problem
 from tests.cheapest import cheapest_plan
 from tests.family_strategies import family_instances
 from tests.oracle import optimal_cost
@@ -17,7 +17,7 @@ NO_TOPPLE = PlanOptions(topple=False)
 
 
 def agree(instance, options):
-    assert (why_infeasible(instance, options) is None) == (optimal_cost(instance, options) is not None)
+    assert (Problem(instance, options).infeasible is None) == (optimal_cost(instance, options) is not None)
 
 
 @settings(max_examples=150, deadline=None)
@@ -59,24 +59,27 @@ def test_relations_with_any_number_of_bottoms_agree_with_exhaustive_search(toppl
 @given(family_instances(max_blocks=3, max_stacks=2, max_buffers=0))
 def test_blocks_on_a_carrier_that_stays_where_it_is_can_be_put_anywhere(instance):
     options = PlanOptions(topple=False, without=("carry", "lift"))
-    assert (why_infeasible(instance, options) is None) == (cheapest_plan(instance, options) is not None)
+    assert (Problem(instance, options).infeasible is None) == (cheapest_plan(instance, options) is not None)
 
 
 def test_two_locations_without_topple_keep_their_line():
     def problem(goal):
         return make_instance(name="x", blocks="abc", stacks=["s1", "s2"], start={"s1": "ab", "s2": "c"}, goal=goal)
 
-    assert why_infeasible(problem(StacksGoal({"s2": tuple("cba")})), NO_TOPPLE) is None
+    assert Problem(problem(StacksGoal({"s2": tuple("cba")})), NO_TOPPLE).infeasible is None
     swapped = problem(StacksGoal({"s1": tuple("ba"), "s2": ("c",)}))
-    assert "two locations" in why_infeasible(swapped, NO_TOPPLE)
-    assert why_infeasible(swapped, PlanOptions()) is None
+    assert "two locations" in Problem(swapped, NO_TOPPLE).infeasible
+    assert Problem(swapped, PlanOptions()).infeasible is None
 
 
 def test_more_bottoms_than_locations_is_infeasible_even_with_topple():
     instance = make_instance(name="x", blocks="ab", stacks=["s1"], start={"s1": "ab"}, goal=OnGoal({}, ("a", "b")))
-    assert "there are 1 locations" in why_infeasible(instance, PlanOptions())
+    assert "there are 1 locations" in Problem(instance, PlanOptions()).infeasible
 
 
 def test_nothing_to_do_is_feasible():
     for goal in (StacksGoal({}), PositionsGoal({}), OnGoal({})):
-        assert why_infeasible(make_instance(name="x", blocks=[], stacks=["s1"], start={}, goal=goal), NO_TOPPLE) is None
+        assert (
+            Problem(make_instance(name="x", blocks=[], stacks=["s1"], start={}, goal=goal), NO_TOPPLE).infeasible
+            is None
+        )

@@ -9,16 +9,18 @@ from pathlib import Path
 
 import pandas as pd
 
+from smash.records.episodes import EpisodeRecord
+from smash.records.runs import RunRecord
 from smash_analysis.report.blocks import Block, Listing, TableBlock, Words
 from smash_analysis.report.growth import SIZES_FOR_CURVES
-from smash_analysis.report.sources import Record, Source
+from smash_analysis.report.sources import Source
 from smash_analysis.statistics.conditions import condition_lines
 
 
 def appendix(source: Source) -> list[Block]:
     """Return the origin of one source's records and the commands that make them and each part again."""
     blocks: list[Block] = [Words("origin", "Records", _origin(source))]
-    records = source.runs + source.episodes
+    records: list[RunRecord | EpisodeRecord] = [*source.runs, *source.episodes]
     if versions := _versions(records):
         mixed = [name for name, found in versions.items() if len(found) > 1]
         note = f"Mixed within these records: {', '.join(mixed)}." if mixed else "The same for all records."
@@ -33,38 +35,33 @@ def appendix(source: Source) -> list[Block]:
 
 
 def _origin(source: Source) -> list[str]:
-    lines = [f"{name}: SHA-256 {digest}" for name, digest in source.hashes()] + source.problems
+    lines = [f"{name}: SHA-256 {digest}" for name, digest in source.hashes()] + [
+        str(problem) for problem in source.problems
+    ]
     if source.runs:
-        lines += condition_lines(source.runs)
+        lines += condition_lines(source.runs, "runs")
         lines.append(_dates(source.runs, "runs"))
-        lines.append(f"seeds of the planners: {_listed(record['seed'] for record in source.runs)}")
-        budgets = _listed(record["budget"] for record in source.runs)
-        lines.append(f"budgets: {budgets} s; threads: {_listed(record.get('threads') for record in source.runs)}")
+        lines.append(f"seeds of the planners: {_listed(record.seed for record in source.runs)}")
+        budgets = _listed(record.budget for record in source.runs)
+        lines.append(f"budgets: {budgets} s; threads: {_listed(record.threads for record in source.runs)}")
     if source.episodes:
-        lines += [line.replace(" runs", " episodes") for line in condition_lines([_as_run(r) for r in source.episodes])]
+        lines += condition_lines(source.episodes, "episodes")
         lines.append(_dates(source.episodes, "episodes"))
-        lines.append(f"seeds of the physics: {_listed(record['seed'] for record in source.episodes)}")
+        lines.append(f"seeds of the physics: {_listed(record.seed for record in source.episodes)}")
     if source.trials:
-        lines.append(f"{len(source.trials)} topples, scene {_listed(trial['scene'] for trial in source.trials)}")
-        lines.append(f"seeds of the physics: {_listed(trial['seed'] for trial in source.trials)}")
+        lines.append(f"{len(source.trials)} topples, scene {_listed(trial.scene for trial in source.trials)}")
+        lines.append(f"seeds of the physics: {_listed(trial.seed for trial in source.trials)}")
     if source.scaling is not None:
         lines.append("the records behind the table were not kept: commit, machine and versions are not known here")
-    commits = {(record.get("commit") or {}).get("hash") for record in source.runs + source.episodes}
+    records: list[RunRecord | EpisodeRecord] = [*source.runs, *source.episodes]
+    commits = {record.commit.hash for record in records}
     if len(commits) > 1:
         lines.append(f"MIXED COMMITS: {len(commits)} of them; figures of different code stand side by side")
     return lines
 
 
-def _as_run(episode: Record) -> Record:
-    return {
-        "outcome": "",
-        "label": "",
-        **{k: v for k, v in episode.items() if k in ("commit", "machine", "load_average")},
-    }
-
-
-def _dates(records: Iterable[Record], what: str) -> str:
-    started = sorted(record["started"] for record in records if record.get("started"))
+def _dates(records: Iterable[RunRecord | EpisodeRecord], what: str) -> str:
+    started = sorted(record.started for record in records)
     return (
         f"{what} started from {started[0][:16]} to {started[-1][:16]} UTC" if started else f"{what}: start not recorded"
     )
@@ -76,10 +73,10 @@ def _listed(values: Iterable[object]) -> str:
     return ", ".join(shown) if len(shown) <= 12 else f"{', '.join(shown[:11])}, … ({len(shown)} in all)"
 
 
-def _versions(records: Iterable[Record]) -> dict[str, list[str]]:
+def _versions(records: Iterable[RunRecord | EpisodeRecord]) -> dict[str, list[str]]:
     found: dict[str, dict[str, None]] = {}
     for record in records:
-        for name, version in (record.get("versions") or {}).items():
+        for name, version in record.versions.items():
             found.setdefault(name, {})[version] = None
     return {name: list(versions) for name, versions in sorted(found.items())}
 
@@ -91,18 +88,20 @@ def commands(source: Source) -> list[str]:
     if source.runs:
         lines += [_runs(source, path), f"smash records check {path}"]
     if source.episodes:
-        seeds = max(record["seed"] for record in source.episodes) + 1
-        policies = " ".join(f"--policy {policy}" for policy in dict.fromkeys(r["policy"] for r in source.episodes))
+        seeds = max(record.seed for record in source.episodes) + 1
+        policies = " ".join(f"--policy {policy}" for policy in dict.fromkeys(r.policy for r in source.episodes))
         lines.append(f"smash episodes {path} --seeds {seeds} {policies}")
     if source.trials:
-        cut, most, seed = (max(trial[name] for trial in source.trials) for name in ("height", "falling", "seed"))
+        cut, most, seed = (
+            max(getattr(trial, name) for trial in source.trials) for name in ("height", "falling", "seed")
+        )
         lines.append(f"smash topple-map --highest-cut {cut} --most {most} --seeds {seed + 1} --out {path}")
     if source.scaling is not None:
         table = source.scaling
         lines.append(
             _scaling(table["label"].unique(), table["blocks"].max(), table["runs"].max(), "") + f" --out {path}"
         )
-    lines += [f"python -m analysis.{module} {path}    # {words}" for module, words in _modules(source)]
+    lines += [f"python -m smash_analysis.{module} {path}    # {words}" for module, words in _modules(source)]
     return lines
 
 
@@ -111,7 +110,7 @@ def _modules(source: Source) -> Iterator[tuple[str, str]]:
     if source.runs:
         yield "ablation", "budget x buffer heatmaps"
         yield "comparison", "comparison, curves over time"
-    if source.scaling is not None or len({record["blocks"] for record in source.runs}) >= SIZES_FOR_CURVES:
+    if source.scaling is not None or len({record.blocks for record in source.runs}) >= SIZES_FOR_CURVES:
         yield "scaling", "curves over blocks"
     if source.episodes:
         yield "execution_tables", "Tables I and II"
@@ -121,13 +120,13 @@ def _runs(source: Source, path: str) -> str:
     """Return the command that did the runs: a sweep where its file is there, else the command that needs none."""
     if source.experiment:
         return f"smash sweep {shlex.quote(str(source.path / 'experiment.toml'))} --out {path}"
-    planners = dict.fromkeys(record["planner"] for record in source.runs)
-    budget = f" --budget {max(record['budget'] for record in source.runs):g}"
-    if {record["experiment"] for record in source.runs} == {"scaling"}:
-        count = max(Counter(suite for suite, _ in {(r["suite"], r["instance"]) for r in source.runs}).values())
-        return _scaling(planners, max(record["blocks"] for record in source.runs), count, budget) + f" --out {path}"
-    suites = " ".join(shlex.quote(suite) for suite in dict.fromkeys(record["suite"] for record in source.runs))
-    buffers = " ".join(f"--buffers {count}" for count in dict.fromkeys(record["buffers"] for record in source.runs))
+    planners = dict.fromkeys(record.planner for record in source.runs)
+    budget = f" --budget {max(record.budget for record in source.runs):g}"
+    if {record.experiment for record in source.runs} == {"scaling"}:
+        count = max(Counter(suite for suite, _ in {(r.suite, r.instance) for r in source.runs}).values())
+        return _scaling(planners, max(record.blocks for record in source.runs), count, budget) + f" --out {path}"
+    suites = " ".join(shlex.quote(suite) for suite in dict.fromkeys(record.suite for record in source.runs))
+    buffers = " ".join(f"--buffers {count}" for count in dict.fromkeys(record.buffers for record in source.runs))
     return f"smash compare {suites} {_given(planners)} {buffers}{budget} --out {path}"
 
 

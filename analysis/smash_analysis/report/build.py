@@ -40,7 +40,7 @@ def section(source: Source) -> Section:
         blocks += landing_blocks(source.trials)
         stores["trials"] = trial_store(source.trials)
     if source.problems:
-        blocks.insert(0, Words("unread", "What could not be read", source.problems))
+        blocks.insert(0, Words("unread", "What could not be read", [str(problem) for problem in source.problems]))
     return Section(source.name, source.name, _lead(source), headlines, figures, blocks, appendix(source), stores)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Hashable
 
 import pandas as pd
 
+from smash.records.episodes import EpisodeRecord
 from smash_analysis.charts.heatmaps import SUCCESS_COLOURS
 from smash_analysis.execution_tables import (
     BENCHMARKS,
@@ -18,12 +19,11 @@ from smash_analysis.execution_tables import (
 )
 from smash_analysis.report.blocks import Block, Cell, Grid, GridBlock, TableBlock
 from smash_analysis.report.grids import Shades, variant_words
-from smash_analysis.report.sources import Record
 from smash_analysis.statistics.intervals import success_rate
 from smash_analysis.tables.writing import SPREADS, rate_cell
 
 
-def execution_blocks(records: list[Record]) -> list[Block]:
+def execution_blocks(records: list[EpisodeRecord]) -> list[Block]:
     """Return success as grids, the paper's tables with ours, execution time saved, and the failures."""
     episodes = _by_scene(told_episodes(records))
     blocks: list[Block] = [_success(episodes)]
@@ -67,7 +67,7 @@ def _failed(episodes: pd.DataFrame, row: dict[Hashable, object]) -> list[int]:
     ]
 
 
-def execution_headlines(records: list[Record]) -> list[str]:
+def execution_headlines(records: list[EpisodeRecord]) -> list[str]:
     """Return success rates by policy and variant, and the time that topple saves, a sentence each."""
     episodes = _by_scene(told_episodes(records))
     lines = []

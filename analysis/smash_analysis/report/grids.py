@@ -8,6 +8,7 @@ from typing import Any
 
 import pandas as pd
 
+from smash.records.runs import RunRecord
 from smash_analysis.charts.heatmaps import (
     ACTION_COLOURS,
     GAIN_COLOURS,
@@ -16,14 +17,13 @@ from smash_analysis.charts.heatmaps import (
     ink,
     planner_figure,
 )
-from smash_analysis.records import runs_table
 from smash_analysis.report.blocks import Cell, Grid, GridBlock
-from smash_analysis.report.sources import Record
 from smash_analysis.report.stores import seconds
 from smash_analysis.statistics.findings import planner_findings, smallest_buffers
 from smash_analysis.statistics.intervals import wilson
 from smash_analysis.tables.cells import matched_cells, variant_cells
 from smash_analysis.tables.readings import readings
+from smash_analysis.tables.runs import runs_table
 from smash_analysis.tables.writing import ablation_table
 
 VARIANT_WORDS = {"no-topple": "without topple", "topple": "with topple"}
@@ -53,7 +53,7 @@ def variant_words(variant: str) -> str:
     return VARIANT_WORDS.get(variant, variant)
 
 
-def ablation_grids(records: list[Record]) -> list[GridBlock]:
+def ablation_grids(records: list[RunRecord]) -> list[GridBlock]:
     """Return budget x buffer heatmaps, a block per planner and suite that was run at several of each."""
     read = readings(records)
     blocks: list[GridBlock] = []
@@ -186,7 +186,7 @@ class _Ablation:
         return Cell(text, *colours, f"{named}, B = {buffers:g}, {budget:g} s: {words}", entries)
 
 
-def coverage_grids(records: list[Record], kept: Sequence[int], runs: pd.DataFrame) -> GridBlock:
+def coverage_grids(records: list[RunRecord], kept: Sequence[int], runs: pd.DataFrame) -> GridBlock:
     """Return planner x suite: how many problems have a plan, and how many a proof, a grid per variant and question.
 
     Args:

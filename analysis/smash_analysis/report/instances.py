@@ -26,13 +26,13 @@ def cards(source: Source, runs: pd.DataFrame) -> CardsBlock:
     """
     behind: dict[tuple[str, str], list[int]] = {}
     for number, record in enumerate(source.runs):
-        behind.setdefault((record["suite"], record["instance"]), []).append(number)
+        behind.setdefault((record.suite, record.instance), []).append(number)
     drawn = {key: numbers for key, numbers in behind.items() if drawable(source.runs[numbers[0]])}
     replays = _replays(source.path)
     known = {(str(s), str(i)): part for (s, i), part in runs.groupby(["suite", "instance"], sort=False)}
     made = []
     for (suite, instance), numbers in sorted(drawn.items())[:MOST_CARDS]:
-        pictures, note = scenes(source.runs[numbers[0]]["instance_document"])
+        pictures, note = scenes(source.runs[numbers[0]].instance_document)
         name = shown(instance) if instance.startswith(suite) else f"{suite}: {shown(instance)}"
         costs = _costs(known[suite, instance]) if (suite, instance) in known else []
         links = [(file.stem.removeprefix(instance).strip("-_ ") or "replay", str(file)) for file in replays(instance)]

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from smash_analysis.report.sources import Record
+from smash.records.runs import RunRecord
 
 SIDE, GAP, FLOOR = 26, 12, 22
 """Edge of a block, room between piles, and room for the names under them [px]."""
@@ -110,7 +110,6 @@ def _short(name: str, most: int) -> str:
     return name if len(name) <= most else name[: most - 1] + "…"
 
 
-def drawable(record: Record) -> bool:
-    """Return whether the record holds an instance that is small enough to be drawn."""
-    document = record.get("instance_document")
-    return document is not None and len(document["blocks"]) <= MOST_BLOCKS
+def drawable(record: RunRecord) -> bool:
+    """Return whether the instance of a record is small enough to be drawn."""
+    return record.blocks <= MOST_BLOCKS

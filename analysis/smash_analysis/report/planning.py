@@ -19,14 +19,13 @@ from smash_analysis.statistics.effects import (
     ANY,
     Effect,
     planner_effects,
-    planner_table,
     proven_optima,
     reference_planner,
     topple_effects,
-    topple_table,
 )
 from smash_analysis.statistics.findings import THRESHOLD, cutoff_findings, smallest_buffers
 from smash_analysis.tables.cells import variant_cells
+from smash_analysis.tables.effects import planner_table, topple_table
 from smash_analysis.tables.readings import cutoff_check, readings
 from smash_analysis.tables.writing import SPREADS, with_spread
 
@@ -50,7 +49,7 @@ class Planning:
         self.runs = compared(self.final)
         self.proven, self.wrong = optima(self.final)
         self.effects = topple_effects(pd.concat([proven_optima(self.runs), self.runs]), MOST_EFFECTS)
-        self.sizes = len({record["blocks"] for record in self.records})
+        self.sizes = len({record.blocks for record in self.records})
 
     def figures(self) -> list[tuple[str, str]]:
         """Return the numbers at the top of the section."""
@@ -84,7 +83,7 @@ class Planning:
 
     def cells(self) -> pd.DataFrame:
         """Return the cells of the curves over blocks."""
-        return scaling_cells([record for record in self.records if record["kind"] != "cutoff"])
+        return scaling_cells([record for record in self.records if record.kind != "cutoff"])
 
     def _thresholds(self) -> list[str]:
         """Say the fewest buffers that reach the paper's success rate, where several were tried on few sets."""
@@ -99,7 +98,7 @@ class Planning:
             needs.setdefault(tuple(said), []).append(f"{label} on {suite}")
         if not needs:
             return []
-        budget = max(record["budget"] for record in self.records)
+        budget = max(record.budget for record in self.records)
         lines = [f"{' and '.join(said)}: {', '.join(who)}" for said, who in needs.items()]
         return [
             f"Fewest buffers with at least {THRESHOLD:.0%} success at the largest budget (up to {budget:g} s; the "
@@ -234,7 +233,7 @@ class Planning:
         return [
             number
             for number, record in zip(self.kept, self.final, strict=True)
-            if all(record[mine] == row[name] for mine, name in FAILURE_COLUMNS) and record["reason"] == reason
+            if all(getattr(record, mine) == row[name] for mine, name in FAILURE_COLUMNS) and record.reason == reason
         ]
 
     def _instances(self) -> CardsBlock:

@@ -6,18 +6,18 @@ import hashlib
 import os
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
-from smash_analysis.records import RUN_FORMAT, NoRecords, read_lines
+from smash.problem.errors import MalformedFile
+from smash.records.episodes import EpisodeRecord
+from smash.records.files import EPISODES, RUNS, TRIALS, R, RecordFile
+from smash.records.reading import NoRecords, finished
+from smash.records.runs import RunRecord
+from smash.records.trials import Trial
 
-EPISODE_FORMAT = "smash-episode-run/1"
-TRIAL_FORMAT = "smash-topple-trial/1"
-RUNS, EPISODES, TRIALS, SCALING = "runs.jsonl", "episodes.jsonl", "trials.jsonl", "scaling.csv"
-FORMATS = {RUNS: RUN_FORMAT, EPISODES: EPISODE_FORMAT, TRIALS: TRIAL_FORMAT}
-
-Record = dict[str, Any]
+SCALING = "scaling.csv"
+FILES = (RUNS.name, EPISODES.name, TRIALS.name)
 
 
 @dataclass(slots=True)
@@ -29,16 +29,16 @@ class Source:
         path: The directory.
         runs: Records of `runs.jsonl`; `episodes` and `trials` likewise.
         scaling: `scaling.csv`, where the records behind it were not kept.
-        problems: Files that cannot be read, a line each.
+        problems: Files that cannot be read.
     """
 
     name: str
     path: Path
-    runs: list[Record] = field(default_factory=list)
-    episodes: list[Record] = field(default_factory=list)
-    trials: list[Record] = field(default_factory=list)
+    runs: list[RunRecord] = field(default_factory=list)
+    episodes: list[EpisodeRecord] = field(default_factory=list)
+    trials: list[Trial] = field(default_factory=list)
     scaling: pd.DataFrame | None = None
-    problems: list[str] = field(default_factory=list)
+    problems: list[MalformedFile] = field(default_factory=list)
 
     @property
     def empty(self) -> bool:
@@ -53,7 +53,7 @@ class Source:
 
     def hashes(self) -> list[tuple[str, str]]:
         """Return (name, SHA-256) of the files that were read."""
-        files = [self.path / name for name in (*FORMATS, SCALING)]
+        files = [self.path / name for name in (*FILES, SCALING)]
         return [(file.name, hashlib.sha256(file.read_bytes()).hexdigest()) for file in files if file.is_file()]
 
 
@@ -64,12 +64,13 @@ def find_sources(results: Path, out: Path) -> list[Source]:
         NoRecords: where there is no record at all.
     """
     if not results.is_dir():
-        raise NoRecords(f"{results}: no such directory")
+        raise NoRecords(str(results), "no such directory")
     sources = [_read(directory, results) for directory in _directories(results, out.resolve())]
     if all(source.empty for source in sources):
         problems = [problem for source in sources for problem in source.problems]
-        wanted = ", ".join(FORMATS)
-        raise NoRecords(problems[0] if problems else f"{results}: no finished run there or below ({wanted})")
+        if problems:
+            raise problems[0]
+        raise NoRecords(str(results), f"no finished run there or below ({', '.join(FILES)})")
     return [source for source in sources if not source.empty or source.problems]
 
 
@@ -78,7 +79,7 @@ def _directories(results: Path, out: Path) -> list[Path]:
     for place, inner, files in os.walk(results):
         directory = Path(place)
         inner[:] = sorted(name for name in inner if not name.startswith(".") and (directory / name).resolve() != out)
-        has_records = any(name in files for name in FORMATS)
+        has_records = any(name in files for name in FILES)
         # A table of curves beside or below its records says nothing that they do not say.
         alone = SCALING in files and not any(directory.is_relative_to(other) for other in found)
         if directory.resolve() != out and (has_records or alone):
@@ -89,33 +90,33 @@ def _directories(results: Path, out: Path) -> list[Path]:
 def _read(directory: Path, results: Path) -> Source:
     name = results.resolve().name if directory == results else directory.relative_to(results).as_posix()
     source = Source(name.encode(errors="backslashreplace").decode(), directory)
-    for file, wanted in FORMATS.items():
-        if not (directory / file).is_file():
-            continue
-        try:
-            records = read_lines(directory / file, wanted)
-        except NoRecords as error:
-            source.problems.append(str(error))
-            continue
-        match file:
-            case "runs.jsonl":
-                source.runs = records
-            case "episodes.jsonl":
-                source.episodes = records
-            case "trials.jsonl":
-                source.trials = records
+    source.runs = _records(source, RUNS)
+    source.episodes = _records(source, EPISODES)
+    source.trials = _records(source, TRIALS)
     if not source.runs and (directory / SCALING).is_file():
         source.scaling = _scaling(directory / SCALING, source.problems)
     return source
 
 
-def _scaling(file: Path, problems: list[str]) -> pd.DataFrame | None:
+def _records(source: Source, kind: RecordFile[R]) -> list[R]:
+    if not kind.path(source.path).is_file():
+        return []
+    try:
+        return finished(source.path, kind)
+    except NoRecords:
+        return []
+    except MalformedFile as error:
+        source.problems.append(error)
+        return []
+
+
+def _scaling(file: Path, problems: list[MalformedFile]) -> pd.DataFrame | None:
     try:
         table = pd.read_csv(file, dtype={"room": "string", "label": "string", "variant": "string"})
     except (ValueError, OSError) as error:
-        problems.append(f"{file}: {' '.join(str(error).split())}")
+        problems.append(MalformedFile(str(file), " ".join(str(error).split())))
         return None
     if not {"label", "variant", "room", "blocks", "first_seconds", "proof_seconds"} <= set(table.columns):
-        problems.append(f"{file}: not the table that `python -m smash_analysis.scaling` writes")
+        problems.append(MalformedFile(str(file), "not the table that `python -m smash_analysis.scaling` writes"))
         return None
     return table

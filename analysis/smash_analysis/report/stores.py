@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import Any
 
-from smash_analysis.records import legal_trace
+from smash.records.episodes import EpisodeRecord
+from smash.records.runs import RunRecord
+from smash.records.trials import Trial
 from smash_analysis.report.blocks import Store
-from smash_analysis.report.sources import Record
 
 RUN_COLUMNS = [
     "instance", "planner", "variant", "B", "budget [s]", "cost", "bound", "status", "first plan [s]", "took [s]",
@@ -19,89 +21,84 @@ EPISODE_COLUMNS = [
 TRIAL_COLUMNS = ["stack", "cut at", "falling", "seed", "result", "graspable", "below moved [cm]", "reason"]
 
 
-def run_store(records: list[Record]) -> Store:
+def run_store(records: Sequence[RunRecord]) -> Store:
     """Return a row a record, in their order."""
     return Store(RUN_COLUMNS, [_run(record) for record in records])
 
 
-def _run(record: Record) -> list[Any]:
-    trace = legal_trace(record)
-    seed = f" (seed {record['seed']})" if record["seed"] else ""
+def _run(record: RunRecord) -> list[Any]:
+    trace = record.trace
+    seed = f" (seed {record.seed})" if record.seed else ""
     return [
-        shown(record["instance"]) + seed,
-        record["label"],
-        record["variant"],
-        record["buffers"],
-        f"{record['budget']:g}" + (" (cut off)" if record["kind"] == "cutoff" else ""),
+        shown(record.instance) + seed,
+        record.label,
+        record.variant,
+        record.buffers,
+        f"{record.budget:g}" + (" (cut off)" if record.kind == "cutoff" else ""),
         trace[-1][1] if trace else "–",
-        "–" if record["lower_bound"] is None else record["lower_bound"],
-        record["status"],
+        "–" if record.lower_bound is None else record.lower_bound,
+        record.status,
         seconds(trace[0][0]) if trace else "–",
-        seconds(record["wall_seconds"]),
-        record["outcome"],
+        seconds(record.wall_seconds),
+        record.outcome,
         reason(record),
     ]
 
 
-def reason(record: Record) -> str:
+def reason(record: RunRecord) -> str:
     """Return why a run has no plan, or ended badly; empty where there is nothing to explain."""
-    if record["reason"]:
-        return str(record["reason"])
-    if record["outcome"] in ("budget-spent", "over-budget") and not record["incumbents"]:
+    if record.reason:
+        return record.reason
+    if record.outcome in ("budget-spent", "over-budget") and not record.incumbents:
         return "no plan by the budget"
     return ""
 
 
-def episode_store(records: list[Record]) -> Store:
+def episode_store(records: Sequence[EpisodeRecord]) -> Store:
     """Return a row an episode, in their order."""
     return Store(EPISODE_COLUMNS, [_episode(record) for record in records])
 
 
-def _episode(record: Record) -> list[Any]:
-    episode = record["episode"] or {}
-    failure = episode.get("failure") or {}
-    result = "success" if episode.get("success") else failure.get("name", "crashed")
-    why = failure.get("reason") or record["problem"]
-    if failure.get("action"):
-        why = f"{why} (step {failure.get('step')}: {' '.join(map(str, failure['action']))})"
+def _episode(record: EpisodeRecord) -> list[Any]:
+    episode = record.episode
+    failure = None if episode is None else episode.failure
+    bad = "crashed" if failure is None else failure.name
+    result = "success" if episode is not None and episode.success else bad
+    why = record.problem if failure is None else failure.reason
+    if failure is not None and failure.action:
+        why = f"{why} (step {failure.step}: {' '.join(map(str, failure.action))})"
     return [
-        shown(record["instance"]),
-        record["label"],
-        record["variant"],
-        record["policy"],
-        record["seed"],
+        shown(record.instance),
+        record.label,
+        record.variant,
+        record.policy,
+        record.seed,
         result,
-        f"{episode.get('actions_executed', 0)} of {record['cost']}",
-        seconds((episode.get("times") or {}).get("execution")),
-        episode.get("replans", "–"),
+        f"{0 if episode is None else episode.actions_executed} of {record.cost}",
+        seconds(None if episode is None else episode.times.execution),
+        "–" if episode is None else episode.replans,
         why,
     ]
 
 
-def trial_store(records: list[Record]) -> Store:
+def trial_store(records: Sequence[Trial]) -> Store:
     """Return a row a topple, in their order."""
     return Store(TRIAL_COLUMNS, [_trial(record) for record in records])
 
 
-def _trial(record: Record) -> list[Any]:
-    landings = record["landings"]
-    graspable = sum(landing["graspable"] for landing in landings)
-    result = "success" if succeeded(record) else "failure"
-    why = record["problem"]
-    if not why and not record["stands"]:
+def _trial(record: Trial) -> list[Any]:
+    landings = record.landings
+    graspable = sum(landing.graspable for landing in landings)
+    result = "success" if record.success else "failure"
+    why = record.problem
+    if not why and not record.stands:
         why = "what should stand does not"
     elif not why and graspable < len(landings):
         why = f"{len(landings) - graspable} cannot be grasped from above"
     return [
-        record["stack"], record["height"], record["falling"], record["seed"], result,
-        f"{graspable}/{len(landings)}", f"{100 * record['moved']:.1f}", why,
+        record.stack, record.height, record.falling, record.seed, result,
+        f"{graspable}/{len(landings)}", f"{100 * record.moved:.1f}", why,
     ]  # fmt: skip
-
-
-def succeeded(trial: Record) -> bool:
-    """Return whether all that should stand stands, and every toppled block can be grasped."""
-    landings = trial["landings"]
-    return bool(trial["stands"] and landings and all(landing["graspable"] for landing in landings))
 
 
 def shown(name: str) -> str:

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import pandas as pd
 
 from smash_analysis.statistics.intervals import Paired, paired
-from smash_analysis.tables.writing import median_iqr, rate_cell, with_spread
 
 WITHOUT = "no-topple"
 ANY = "proven optima, any planner"
@@ -91,53 +90,3 @@ def planner_effects(runs: pd.DataFrame) -> list[Effect]:
             if pair.problems:
                 effects.append(Effect({"planner": str(label), "variant": str(variant)}, pair))
     return effects
-
-
-def topple_table(effects: list[Effect]) -> pd.DataFrame:
-    """Return the effects of topple as texts: coverage of both sides, then figures over the common instances alone."""
-    names = {"label": "planner", "buffers": "B"}
-    rows = []
-    for effect in effects:
-        pair = effect.pair
-        fewer, equal, more = pair.tally
-        rows.append(
-            {
-                **{names.get(name, name): value for name, value in effect.about.items()},
-                "solved without": rate_cell(pair.left_rate, "problems"),
-                "solved with": rate_cell(pair.right_rate, "problems"),
-                "common instances": pair.units,
-                "without": figure(pair.left_mean),
-                "with": figure(pair.right_mean),
-                "saved, mean [95 %] (range)": with_spread(pair.mean, pair.interval, pair.units),
-                "saved, median [IQR]": median_iqr(pd.Series(pair.differences), 1),
-                "ratio [95 %] (range)": with_spread(pair.ratio, pair.ratio_interval, pair.units, 2),
-                "shorter / same / longer": f"{fewer} / {equal} / {more}",
-            }
-        )
-    return pd.DataFrame(rows)
-
-
-def planner_table(effects: list[Effect], reference: str) -> pd.DataFrame:
-    """Return planners against the reference as texts."""
-    rows = []
-    for effect in effects:
-        pair = effect.pair
-        more, equal, fewer = pair.tally
-        rows.append(
-            {
-                **effect.about,
-                "solved": rate_cell(pair.left_rate, "problems"),
-                f"solved, {reference}": rate_cell(pair.right_rate, "problems"),
-                "common instances": pair.units,
-                "actions": figure(pair.left_mean),
-                f"actions, {reference}": figure(pair.right_mean),
-                "ratio [95 %] (range)": with_spread(pair.ratio, pair.ratio_interval, pair.units, 2),
-                "shorter / same / longer": f"{fewer} / {equal} / {more}",
-            }
-        )
-    return pd.DataFrame(rows)
-
-
-def figure(value: float, digits: int = 1) -> str:
-    """Return a number, or a dash where there is none."""
-    return "–" if pd.isna(value) else f"{value:.{digits}f}"

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import Any
 
 import pandas as pd
 
+from smash.records.episodes import EpisodeRecord
 from smash_analysis.tables.actions import ACTION_COLUMNS, named
 
-EPISODES = "episodes.jsonl"
-EPISODE_FORMAT = "smash-episode-run/1"
 TIMES = ("offline", "offline_cpu", "online", "online_cpu", "execution")
 EPISODE_TYPES = {
     **dict.fromkeys(("key", "run", "suite", "instance", "label", "variant", "policy", "scene", "status"), "string"),
@@ -42,7 +42,7 @@ ACTION_TYPES = {
 """Columns of `actions`, and their types."""
 
 
-def episodes_table(records: list[dict[str, Any]]) -> pd.DataFrame:
+def episodes_table(records: Sequence[EpisodeRecord]) -> pd.DataFrame:
     """Return one row an episode: the record's plain fields, the episode's, what it failed of, its times [s].
 
     Where a process ended without an episode `success` is false, and `problem` says why.
@@ -50,46 +50,44 @@ def episodes_table(records: list[dict[str, Any]]) -> pd.DataFrame:
     return _typed([_episode_row(record) for record in records], EPISODE_TYPES)
 
 
-def _episode_row(record: dict[str, Any]) -> dict[str, Any]:
-    episode = record["episode"] or {}
-    failure, times = episode.get("failure") or {}, episode.get("times") or {}
-    before, after = record["load_average"]
+def _episode_row(record: EpisodeRecord) -> dict[str, Any]:
+    episode = record.episode
+    failure, times = (None, None) if episode is None else (episode.failure, episode.times)
+    before, after = record.load_average
     return {
-        **{name: record.get(name) for name in EPISODE_TYPES},
-        "success": bool(episode.get("success", False)),
-        "failure": failure.get("name"),
-        "failure_reason": failure.get("reason"),
-        "failure_step": failure.get("step"),
-        **{name: episode.get(name) for name in ("actions_executed", "replans", "retries")},
-        **{f"{name}_seconds": times.get(name) for name in (*TIMES, "task")},
+        **{name: getattr(record, name, None) for name in EPISODE_TYPES},
+        "success": episode is not None and episode.success,
+        "failure": None if failure is None else failure.name,
+        "failure_reason": None if failure is None else failure.reason,
+        "failure_step": None if failure is None else failure.step,
+        **{name: getattr(episode, name, None) for name in ("actions_executed", "replans", "retries")},
+        **{f"{name}_seconds": getattr(times, name, None) for name in (*TIMES, "task")},
         "load_before": before,
         "load_after": after,
-        "started": pd.Timestamp(record["started"]),
-        "commit_hash": record["commit"]["hash"],
-        "commit_dirty": record["commit"]["dirty"],
-        "machine_processor": record["machine"]["processor"],
-        "versions": json.dumps(record["versions"]),
+        "started": pd.Timestamp(record.started),
+        "commit_hash": record.commit.hash,
+        "commit_dirty": record.commit.dirty,
+        "machine_processor": record.machine.processor,
+        "versions": json.dumps(record.versions),
     }
 
 
-def actions_table(records: list[dict[str, Any]]) -> pd.DataFrame:
+def actions_table(records: Sequence[EpisodeRecord]) -> pd.DataFrame:
     """Return one row an action that an episode carried out, recovery moves included: what, how it went, its times [s].
 
     `smash_analysis.tables.actions` says what the columns of an action hold.
     """
-    rows = []
-    for record in records:
-        for performed in (record["episode"] or {}).get("actions", []):
-            times = performed.get("times", {})
-            rows.append(
-                {
-                    **{name: performed.get(name) for name in ACTION_TYPES},
-                    "key": record["key"],
-                    **named(performed["action"]),
-                    "begun_seconds": performed.get("begun"),
-                    **{f"{name}_seconds": times.get(name) for name in TIMES},
-                }
-            )
+    rows = [
+        {
+            **{name: getattr(performed, name, None) for name in ACTION_TYPES},
+            "key": record.key,
+            **named(performed.action),
+            "begun_seconds": performed.begun,
+            **{f"{name}_seconds": getattr(performed.times, name) for name in TIMES},
+        }
+        for record in records
+        for performed in (record.episode.actions if record.episode is not None else [])
+    ]
     return _typed(rows, ACTION_TYPES)
 
 

@@ -10,13 +10,13 @@ from typing import Any
 
 import pandas as pd
 
-from smash_analysis.records import legal_trace
+from smash.records.runs import RunRecord
 
 SETTING = ["label", "suite", "buffers", "variant", "instance", "seed"]
 """What names one problem put to one planner."""
 
 
-def readings(records: list[dict[str, Any]]) -> pd.DataFrame:
+def readings(records: list[RunRecord]) -> pd.DataFrame:
     """Return one row per run and budget that it stands for: `SETTING`, budget, solved, cost (NaN), seconds, run.
 
     `run` is the record's place in `records`.
@@ -24,24 +24,24 @@ def readings(records: list[dict[str, Any]]) -> pd.DataFrame:
     rows = [
         _reading(record, budget, run)
         for run, record in enumerate(records)
-        if record["kind"] != "cutoff"
-        for budget in record["budgets"]
+        if record.kind != "cutoff"
+        for budget in record.budgets
     ]
     return _table(rows)
 
 
-def cutoff_check(records: list[dict[str, Any]]) -> pd.DataFrame:
+def cutoff_check(records: list[RunRecord]) -> pd.DataFrame:
     """Return the runs that were really cut off, beside what the anytime run says about that budget.
 
     Columns: `SETTING`, budget, and solved, cost as read and as cut off (`_read`, `_cut`).
     """
-    rows = [_reading(r, r["budget"], run) for run, r in enumerate(records) if r["kind"] == "cutoff"]
+    rows = [_reading(r, r.budget, run) for run, r in enumerate(records) if r.kind == "cutoff"]
     return readings(records).merge(_table(rows), on=[*SETTING, "budget"], suffixes=("_read", "_cut"))
 
 
-def _reading(record: dict[str, Any], budget: float, run: int) -> dict[str, Any]:
-    within = [(seconds, cost) for seconds, cost in legal_trace(record) if seconds <= budget]
-    setting = {name: record[name] for name in SETTING}
+def _reading(record: RunRecord, budget: float, run: int) -> dict[str, Any]:
+    within = [(seconds, cost) for seconds, cost in record.trace if seconds <= budget]
+    setting = {name: getattr(record, name) for name in SETTING}
     seconds, cost = within[-1] if within else (float("nan"), float("nan"))
     reading = {"budget": float(budget), "solved": bool(within), "cost": float(cost), "seconds": seconds, "run": run}
     return setting | reading

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from smash.execution.episode import Episode
 from smash.execution.executor import Executor
 from smash.execution.physics.world import Frame
 from smash.execution.scene.tabletop import Tabletop
@@ -16,6 +15,7 @@ from smash.execution.viewing.recording import Recording
 from smash.execution.viewing.trajectory_file import write_trajectory
 from smash.problem.errors import MalformedFile
 from smash.problem.files.documents import replacing
+from smash.records.episodes import Episode
 
 FILMS = (".mp4", ".gif")
 PICTURES = (".png", ".pdf", ".svg", ".jpg")

@@ -12,10 +12,10 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from smash.execution.episode import Episode
 from smash.execution.physics.world import ARM, FINGERS, connect
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.viewing.recording import Recording
+from smash.records.episodes import Episode
 
 SIZE = (960, 640)
 """Width and height of a picture [pixels]."""

@@ -15,13 +15,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from smash.execution.episode import Episode
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.viewing.pictures import block_colours
 from smash.execution.viewing.recording import Recording
 from smash.motion.robot import panda_urdf
 from smash.problem.files.documents import write_text
 from smash.problem.model import Goal, Instance, OnGoal, PositionsGoal, StacksGoal, no_goal
+from smash.records.episodes import Episode
 
 TEMPLATE = Path(__file__).parent / "replay.html"
 MESHES = ("link0", *(f"link{number}" for number in range(1, 8)), "hand", "finger", "finger")

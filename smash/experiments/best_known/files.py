@@ -10,7 +10,7 @@ from typing import Any, cast
 
 import msgspec
 
-from smash.experiments.best_known.best_known import PLANS, BestKnown, Entry, Found, open_instances, options_of
+from smash.experiments.best_known.standing import PLANS, BestKnown, Entry, Found, open_instances, options_of
 from smash.problem.errors import MalformedFile, SmashError
 from smash.problem.files.data import data_folder, shipped
 from smash.problem.files.documents import read_bytes, write_text

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from smash.experiments.best_known.best_known import BestKnown, Entry, Found, open_instances
 from smash.experiments.best_known.files import goal_kind
+from smash.experiments.best_known.standing import BestKnown, Entry, Found, open_instances
 from smash.problem.errors import MalformedFile
 
 BEGIN = "<!-- made by `smash best-known table`: begin -->\n"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from smash.experiments.best_known.best_known import (
+from smash.experiments.best_known.standing import (
     BestKnown,
     Entry,
     Found,

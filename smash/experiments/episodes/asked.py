@@ -9,7 +9,7 @@ from typing import Literal, cast
 
 import msgspec
 
-from smash.experiments.episodes.episodes import EpisodeRun, episode_runs, told_apart
+from smash.experiments.episodes.series import EpisodeRun, episode_runs, told_apart
 from smash.problem.errors import MalformedFile
 from smash.problem.files.documents import convert, read_bytes, write_text
 

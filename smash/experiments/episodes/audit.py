@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from smash.experiments.episodes.asked import asked_runs
-from smash.experiments.episodes.episodes import EPISODE_RUN_FORMAT, EPISODES
-from smash.experiments.sweeps.audit import Check, Line, read_lines, sound
-from smash.experiments.sweeps.records import RUNS, read_records
+from smash.experiments.sweeps.audit import Check, sound, told, whole_lines
 from smash.problem.errors import MalformedFile
-from smash.records.schema import EpisodeRecord
-
-DAMAGED = "episodes.damaged"
+from smash.records.episodes import EpisodeRecord
+from smash.records.files import EPISODES, RUNS
+from smash.records.reading import Line, read
 
 
 def audit_episodes(results: Path) -> list[Check]:
@@ -22,9 +20,10 @@ def audit_episodes(results: Path) -> list[Check]:
     Raises:
         MalformedFile: where a file cannot be read.
     """
-    if not (results / EPISODES).is_file():
+    if not EPISODES.path(results).is_file():
         return []
-    lines, whole = read_lines(results / EPISODES, EpisodeRecord, EPISODE_RUN_FORMAT, results / DAMAGED)
+    reading = read(results, EPISODES)
+    lines, whole = reading.lines, whole_lines(reading, results, EPISODES)
     checks = [whole, *_complete(lines, results), _plans_there(lines, results), *sound(lines), _outcomes(lines)]
     return [
         Check(f"episodes: {check.question}", check.answer, [f"episodes: {finding}" for finding in check.findings])
@@ -32,7 +31,7 @@ def audit_episodes(results: Path) -> list[Check]:
     ]
 
 
-def _complete(lines: list[Line], results: Path) -> Iterator[Check]:
+def _complete(lines: Sequence[Line[EpisodeRecord]], results: Path) -> Iterator[Check]:
     try:
         planned = asked_runs(results)
     except MalformedFile as error:
@@ -41,44 +40,48 @@ def _complete(lines: list[Line], results: Path) -> Iterator[Check]:
     if planned is None:
         yield Check("complete", "not known: what was asked for is not recorded there")
         return
-    there = {line.record["key"] for line in lines}
-    missing = Counter(f"{run.record['label']}, {run.policy}" for run in planned if run.key not in there)
-    of = Counter(f"{run.record['label']}, {run.policy}" for run in planned)
+    there = {line.record.key for line in lines}
+    missing = Counter(f"{run.record.label}, {run.policy}" for run in planned if run.key not in there)
+    of = Counter(f"{run.record.label}, {run.policy}" for run in planned)
     words = [f"missing: {setting}: {count} of {of[setting]}" for setting, count in missing.items()]
     meant = {run.key for run in planned}
     yield Check("complete", f"{len(meant & there)} of {len(meant)} that were asked for", words)
-    strangers = [f"not asked for: {line}" for line in lines if line.record["key"] not in meant]
+    strangers = [f"not asked for: {told(line)}" for line in lines if line.record.key not in meant]
     yield Check("nothing but what was asked for", f"other episodes: {len(strangers)}", strangers)
 
 
-def _plans_there(lines: list[Line], results: Path) -> Check:
+def _plans_there(lines: Sequence[Line[EpisodeRecord]], results: Path) -> Check:
     """Each episode's plan must be that of a run recorded there: same key, same cost."""
     try:
-        costs = {record["key"]: record["cost"] for record in read_records(results / RUNS)}
+        runs = read(results, RUNS)
+        runs.refuse_damage()
+        costs = {run.key: run.cost for run in runs.records}
     except MalformedFile as error:
         return Check("each plan is recorded there", f"not known: {error}")
     words = []
     for line in lines:
-        run, cost = line.record["run"], line.record["cost"]
+        run, cost = line.record.run, line.record.cost
         if run not in costs:
-            words.append(f"no plan: {line}: its run {run} is not recorded there")
+            words.append(f"no plan: {told(line)}: its run {run} is not recorded there")
         elif costs[run] != cost:
-            words.append(f"another plan: {line}: it cost {cost}, the recorded one costs {costs[run]}")
-    return Check("each plan is recorded there", f"{len({line.record['run'] for line in lines})} plans", words)
+            words.append(f"another plan: {told(line)}: it cost {cost}, the recorded one costs {costs[run]}")
+    return Check("each plan is recorded there", f"{len({line.record.run for line in lines})} plans", words)
 
 
-def _outcomes(lines: list[Line]) -> Check:
+def _outcomes(lines: Sequence[Line[EpisodeRecord]]) -> Check:
     ends: Counter[str] = Counter()
     words = []
     for line in lines:
-        episode, problem = line.record["episode"], line.record["problem"].strip()
-        failure = (episode or {}).get("failure") or {}
-        ends["no end" if episode is None else "success" if episode["success"] else failure.get("name", "failure")] += 1
+        episode = line.record.episode
         if episode is None:
-            if not problem:
-                words.append(f"unexplained: {line}: no end, without a reason")
-        elif episode["success"] == bool(failure):
-            words.append(f"unexplained: {line}: {'a success with' if failure else 'a failure without'} a reason")
-        elif failure and not str(failure.get("reason", "")).strip():
-            words.append(f"unexplained: {line}: {failure.get('name')} without a reason")
+            ends["no end"] += 1
+            if not line.record.problem.strip():
+                words.append(f"unexplained: {told(line)}: no end, without a reason")
+            continue
+        failure = episode.failure
+        ends["success" if episode.success else "failure" if failure is None else failure.name] += 1
+        if episode.success == (failure is not None):
+            words.append(f"unexplained: {told(line)}: {'a success with' if failure else 'a failure without'} a reason")
+        elif failure is not None and not failure.reason.strip():
+            words.append(f"unexplained: {told(line)}: {failure.name} without a reason")
     return Check("every outcome explained", ", ".join(f"{n} {end}" for end, n in ends.most_common()) or "none", words)

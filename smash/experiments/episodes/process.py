@@ -1,4 +1,4 @@
-"""Episodes in a process of their own: a question a line as JSON on standard input, its episode a line on the output."""
+"""Episodes in a process of their own: an `EpisodeRun` a line on standard input, its episode a line on the output."""
 
 from __future__ import annotations
 
@@ -6,29 +6,26 @@ import json
 import os
 import sys
 from pathlib import Path
-from typing import Any
 
-from smash.execution.episode import Episode, episode_text
 from smash.execution.executor import Executor
 from smash.execution.policy import OPEN
 from smash.execution.scene.scene_file import default_scene, read_scene
 from smash.execution.viewing.capture import Capture
-from smash.experiments.episodes.episodes import REPLAN_BUDGET
 from smash.experiments.episodes.replanning import replanner
+from smash.experiments.episodes.series import REPLAN_BUDGET, EpisodeRun
 from smash.experiments.isolation.lifetime import end_with_parent
-from smash.experiments.sweeps.records import recorded_plan
 from smash.problem.files.instances import instance_from_document
+from smash.records.episodes import Episode, episode_text
+from smash.records.record import decoded
 
 
-def run_question(question: dict[str, Any]) -> Episode:
-    """Carry out the plan of a sweep's record: its `seed`, `policy`, `scene`, `replay` (paths or None)."""
-    record = question["record"]
-    instance = instance_from_document(record["instance_document"])
-    plan = recorded_plan(record)
-    scene = default_scene() if question["scene"] is None else read_scene(question["scene"])
-    seed, is_open = question["seed"], question["policy"] == "open"
-    replay = question.get("replay")
-    capture = Capture(replay=None if replay is None else Path(replay))
+def carry_out(run: EpisodeRun) -> Episode:
+    """Carry out the plan of a sweep's record."""
+    instance = instance_from_document(run.record.instance_document)
+    plan = run.record.plan
+    scene = default_scene() if run.scene is None else read_scene(run.scene)
+    seed, is_open = run.seed, run.policy == "open"
+    capture = Capture(replay=None if run.replay is None else Path(run.replay))
     executor = Executor(
         instance,
         plan,
@@ -50,7 +47,7 @@ def main() -> None:
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
     for line in sys.stdin:
-        episode = run_question(json.loads(line))
+        episode = carry_out(decoded(line.encode(), EpisodeRun))
         answers.write(json.dumps(json.loads(episode_text(episode))) + "\n")
         answers.flush()
 

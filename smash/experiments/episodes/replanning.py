@@ -6,9 +6,10 @@ from collections.abc import Callable, Sequence
 
 from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import Job
-from smash.planners.protocol import SolveOptions
+from smash.planners.protocol import Settings
 from smash.planners.registry import why_unknown
 from smash.problem.model import Action, Instance, PlanOptions
+from smash.problem.problem import Problem
 
 FALLBACK = "greedy"
 """Plans at once, any start and goal: asked where the chosen planner has no answer."""
@@ -25,9 +26,8 @@ def replanner(planner: str, budget: float, seed: int = 0) -> Callable[[Instance,
     names = [name for name in dict.fromkeys((planner, FALLBACK)) if why_unknown(name) is None]
 
     def plan(instance: Instance, options: PlanOptions) -> Sequence[Action] | None:
-        settings = SolveOptions(options.topple, options.max_topple, seed=seed, without=options.without)
         for name in names:
-            report = run_isolated(Job(name, instance, settings, budget))
+            report = run_isolated(Job(name, Problem(instance, options), Settings(seed=seed), budget))
             if report.actions is not None:
                 return report.actions
         return None

@@ -6,12 +6,19 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Mapping
 from contextlib import suppress
 from queue import SimpleQueue
 from tempfile import TemporaryFile
 from threading import Timer
-from typing import Any
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from smash.records.episodes import Episode
+from smash.records.record import decoded
+
+if TYPE_CHECKING:
+    from smash.experiments.episodes.series import EpisodeRun
 
 LONGEST_EPISODE = 900.0
 """Seconds of wall time after which an episode is given up."""
@@ -31,8 +38,8 @@ class EpisodeWorker:
         self._errors = TemporaryFile()  # noqa: SIM115 (lives as long as the worker)
         self._asked = 0
 
-    def ask(self, question: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the `smash-episode/1` object that answers the question (see `smash.experiments.episodes.process`).
+    def ask(self, question: EpisodeRun) -> Episode:
+        """Return the episode (`smash.experiments.episodes.process` runs it).
 
         Raises:
             EpisodeLost: where there is no answer.
@@ -45,14 +52,14 @@ class EpisodeWorker:
         late.start()
         try:
             with suppress(BrokenPipeError):
-                process.stdin.write(json.dumps(question).encode() + b"\n")
+                process.stdin.write(json.dumps(msgspec.to_builtins(question)).encode() + b"\n")
                 process.stdin.flush()
             line = process.stdout.readline()
         finally:
             overdue = not late.is_alive()
             late.cancel()
         if line.endswith(b"\n"):
-            return dict(json.loads(line))
+            return decoded(line, Episode)
         self.close()
         raise EpisodeLost(f"no end after {LONGEST_EPISODE:.0f} s" if overdue else self._last_words(process.returncode))
 
@@ -102,7 +109,7 @@ class Crew:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def ask(self, question: Mapping[str, Any]) -> dict[str, Any]:
+    def ask(self, question: EpisodeRun) -> Episode:
         """Let the next idle worker answer.
 
         Raises:

@@ -25,7 +25,7 @@ from smash.problem.errors import SmashError
 from smash.problem.files.plans import action_from_list
 from smash.problem.model import Action
 from smash.problem.plan import Incumbent, Status
-from smash.problem.rules import Law, Verdict
+from smash.problem.rules import Verdict
 from smash.records.outcomes import OutcomeName
 
 MARK = "SMASH_RUN"
@@ -118,7 +118,7 @@ class _Heard:
 
     def __init__(self, job: Job, on_incumbent: OnIncumbent | None) -> None:
         self._job = job
-        self._law = Law(job.instance, job.options)
+        self._law = job.problem.law
         self._tell = on_incumbent
         self._best: tuple[Action, ...] | None = None
         self._cost: int | None = None

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from smash.planners.protocol import SolveOptions
+from smash.planners.protocol import Settings
 from smash.problem.files.instances import instance_document, instance_from_document
 from smash.problem.model import Action, Instance, PlanOptions
 from smash.problem.plan import Incumbent, Plan, Status
-from smash.problem.rules import Law, Verdict
+from smash.problem.problem import Problem
+from smash.problem.rules import Verdict
 from smash.records.outcomes import OUTCOMES, OutcomeName
 
 DEFAULT_MEMORY = 4096
@@ -29,10 +30,20 @@ class Job:
     """One call of a planner: `budget` in seconds of wall time, `memory` in MiB over all of its processes."""
 
     planner: str
-    instance: Instance
-    options: SolveOptions
+    problem: Problem
+    settings: Settings
     budget: float
     memory: int = DEFAULT_MEMORY
+
+    @property
+    def instance(self) -> Instance:
+        """The instance of its problem."""
+        return self.problem.instance
+
+    @property
+    def options(self) -> PlanOptions:
+        """What a plan of its problem may use."""
+        return self.problem.options
 
     def document(self) -> dict[str, Any]:
         """Return the job as JSON data."""
@@ -40,6 +51,7 @@ class Job:
             "planner": self.planner,
             "instance": instance_document(self.instance),
             "options": asdict(self.options),
+            "settings": asdict(self.settings),
             "budget": self.budget,
             "memory": self.memory,
         }
@@ -47,10 +59,11 @@ class Job:
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Job:
         """Build a job from its JSON data."""
+        options = document["options"] | {"without": tuple(document["options"]["without"])}
         return cls(
             document["planner"],
-            instance_from_document(document["instance"]),
-            SolveOptions(**document["options"] | {"without": tuple(document["options"]["without"])}),
+            Problem(instance_from_document(document["instance"]), PlanOptions(**options)),
+            Settings(**document["settings"]),
             document["budget"],
             document["memory"],
         )
@@ -90,11 +103,11 @@ class Report:
         return Plan(
             instance=job.instance.name,
             planner=job.planner,
-            options=PlanOptions(job.options.topple, job.options.max_topple, without=job.options.without),
+            options=job.options,
             status=self.status,
             actions=self.actions,
             lower_bound=self.lower_bound,
             bound_origin=self.bound_origin,
             incumbents=self.incumbents,
-            stated_cost=None if self.actions is None else Law(job.instance, job.options).price(self.actions),
+            stated_cost=None if self.actions is None else job.problem.law.price(self.actions),
         )

@@ -16,12 +16,12 @@ from time import perf_counter
 from typing import Any, NoReturn
 
 from smash.experiments.isolation.job import Job
-from smash.planners.protocol import PlanResult
+from smash.planners.protocol import ask
 from smash.planners.registry import UnknownPlanner, get_planner, make_ready
 from smash.problem.errors import SmashError, Unsupported
 from smash.problem.files.plans import action_list
 from smash.problem.model import Action
-from smash.problem.plan import STATUSES
+from smash.problem.plan import STATUSES, Plan
 
 
 def solve(job: Job, pipe: int) -> NoReturn:
@@ -47,16 +47,16 @@ def _solve(job: Job, voice: _Voice) -> None:
     except SmashError as error:  # no such planner, or no such encoding for it
         return voice.say(kind="failed", outcome="malformed", reason=str(error))
     try:
-        make_ready(planner, job.planner, job.instance, job.options)
+        make_ready(planner, job.planner, job.problem, job.settings)
         voice.say(kind="solving")
         voice.started = perf_counter()
-        result = planner.solve(job.instance, job.options, job.budget, voice)
+        plan = ask(planner, job.problem, job.settings, job.budget, voice, name=job.planner)
     except UnknownPlanner as error:  # the one that is to warm-start it
         return voice.say(kind="failed", outcome="malformed", reason=str(error))
     except Unsupported as error:
         return voice.say(kind="failed", outcome="unsupported", reason=str(error))
     seconds = perf_counter() - voice.started
-    voice.say(kind="result", seconds=seconds, **_result_document(result))
+    voice.say(kind="result", seconds=seconds, **_answer(plan))
     return None
 
 
@@ -90,7 +90,7 @@ class _Voice:
         return float(seconds) if 0 <= seconds <= now else now
 
 
-def _result_document(result: PlanResult) -> dict[str, Any]:
+def _answer(result: Plan) -> dict[str, Any]:
     try:
         if result.status not in STATUSES:
             raise ValueError(f"status {result.status!r} is not one of {', '.join(STATUSES)}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 
@@ -15,43 +15,48 @@ from smash.problem.files.documents import write_text
 
 MANIFEST_FORMAT = "smash-manifest/1"
 
+T = TypeVar("T")
+
 
 def manifest(reproduction: Reproduction, planned: Sequence[Planned]) -> dict[str, Any]:
     """Return the `smash-manifest/1` object of a reproduction as it stands."""
     records = [entry.record for entry in planned if entry.record is not None]
-    return {
-        "format": MANIFEST_FORMAT,
-        "name": reproduction.steps.name,
-        "about": reproduction.steps.about,
-        "started": min((record.started for record in records), default=None),
-        "ended": max((record.ended for record in records if record.ended), default=None),
-        "seconds": round(sum(record.seconds for record in records), 1),
-        "whole": all(entry.plan in ("done", "kept") for entry in planned),
-        "commits": _distinct(record.commit for record in records),
-        "versions": _distinct(record.made_from.packages for record in records),
-        "machine": machine(),
-        "steps": [_step(entry) for entry in planned],
-    }
+    document: dict[str, Any] = msgspec.to_builtins(
+        {
+            "format": MANIFEST_FORMAT,
+            "name": reproduction.stages.name,
+            "about": reproduction.stages.about,
+            "started": min((record.started for record in records), default=None),
+            "ended": max((record.ended for record in records if record.ended), default=None),
+            "seconds": round(sum(record.seconds for record in records), 1),
+            "whole": all(entry.plan in ("done", "kept") for entry in planned),
+            "commits": _distinct(record.commit for record in records),
+            "versions": _distinct(record.made_from.packages for record in records),
+            "machine": machine(),
+            "steps": [_stage(entry) for entry in planned],
+        }
+    )
+    return document
 
 
-def _distinct(values: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = []
+def _distinct(values: Iterable[T]) -> list[T]:
+    found: list[T] = []
     for value in values:
         if value not in found:
             found.append(value)
     return found
 
 
-def _step(entry: Planned) -> dict[str, Any]:
-    step, record = entry.step, entry.record
+def _stage(entry: Planned) -> dict[str, Any]:
+    stage, record = entry.stage, entry.record
     document: dict[str, Any] = {
-        "name": step.name,
-        "about": step.about,
+        "name": stage.name,
+        "about": stage.about,
         "state": _state(entry),
         "why": entry.why,
-        "leaves_out": step.leaves_out,
-        "commands": step.commands,
-        "estimated_minutes": step.minutes,
+        "leaves_out": stage.leaves_out,
+        "commands": stage.commands,
+        "estimated_minutes": stage.minutes,
     }
     if record is None:
         return document
@@ -86,51 +91,51 @@ def write_manifest(reproduction: Reproduction, planned: Sequence[Planned]) -> li
 
 def manifest_page(document: dict[str, Any]) -> str:
     """Return the manifest as Markdown, to be read by people."""
-    host, steps = document["machine"], document["steps"]
-    run = [step for step in steps if step["state"] == "run"]
+    host, stages = document["machine"], document["steps"]
+    run = [stage for stage in stages if stage["state"] == "run"]
     lines = [
         f"# {document['name']}",
         "",
         document["about"],
         "",
-        f"- {len(run)} of {len(steps)} steps run, {span(document['seconds'])} in all, "
+        f"- {len(run)} of {len(stages)} stages run, {span(document['seconds'])} in all, "
         f"from {document['started'] or '–'} to {document['ended'] or '–'}",
         f"- code: {'; '.join(_commit(found) for found in document['commits']) or '–'}",
         f"- machine: {host['processor']}, {host['usable_cores']} of {host['cores']} cores, "
         f"{host['memory_mib'] / 1024:.0f} GiB, {host['system']}",
         *(f"- versions: {_versions(found)}" for found in document["versions"]),
         "",
-        "| step | what | state | estimated | took | load average: mean, most |",
+        "| stage | what | state | estimated | took | load average: mean, most |",
         "|---|---|---|---|---|---|",
     ]
-    for step in steps:
-        took, of = span(step["seconds"]) if "seconds" in step else "–", step.get("load_average")
+    for stage in stages:
+        took, of = span(stage["seconds"]) if "seconds" in stage else "–", stage.get("load_average")
         busy = f"{of['mean']:.1f}, {of['most']:.1f}" if of else "–"
-        estimated = span(60 * step["estimated_minutes"])
-        lines.append(f"| {step['name']} | {step['about']} | {step['state']} | {estimated} | {took} | {busy} |")
-    return "\n".join([*lines, "", *_left_out(steps), *_made(steps)]) + "\n"
+        estimated = span(60 * stage["estimated_minutes"])
+        lines.append(f"| {stage['name']} | {stage['about']} | {stage['state']} | {estimated} | {took} | {busy} |")
+    return "\n".join([*lines, "", *_left_out(stages), *_made(stages)]) + "\n"
 
 
-def _left_out(steps: Sequence[dict[str, Any]]) -> list[str]:
+def _left_out(stages: Sequence[dict[str, Any]]) -> list[str]:
     lines = ["## What was not run, and why", ""]
-    lines += [f"- **{step['name']}**: {step['state']}: {step['why']}" for step in steps if step["state"] != "run"]
-    lines += [f"- {step['name']}: {step['leaves_out']}" for step in steps if step["leaves_out"]]
-    lines += [f"- {step['name']} was kept, although {step['why']}" for step in steps if _kept(step)]
+    lines += [f"- **{stage['name']}**: {stage['state']}: {stage['why']}" for stage in stages if stage["state"] != "run"]
+    lines += [f"- {stage['name']}: {stage['leaves_out']}" for stage in stages if stage["leaves_out"]]
+    lines += [f"- {stage['name']} was kept, although {stage['why']}" for stage in stages if _kept(stage)]
     return [*(lines if len(lines) > 2 else [*lines, "Everything was."]), ""]
 
 
-def _kept(step: dict[str, Any]) -> bool:
-    return step["state"] == "run" and bool(step["why"])
+def _kept(stage: dict[str, Any]) -> bool:
+    return stage["state"] == "run" and bool(stage["why"])
 
 
-def _made(steps: Sequence[dict[str, Any]]) -> list[str]:
+def _made(stages: Sequence[dict[str, Any]]) -> list[str]:
     lines = ["## Commands and products", ""]
-    for step in steps:
-        lines += [f"### {step['name']}", "", "```sh", *step["commands"], "```", ""]
-        if "started" in step:
-            again = f", in {step['starts']} starts" if step["starts"] > 1 else ""
-            lines += [f"Begun {step['started']}{again}; code: {_commit(step['commit'])}.", ""]
-        products = step.get("products")
+    for stage in stages:
+        lines += [f"### {stage['name']}", "", "```sh", *stage["commands"], "```", ""]
+        if "started" in stage:
+            again = f", in {stage['starts']} starts" if stage["starts"] > 1 else ""
+            lines += [f"Begun {stage['started']}{again}; code: {_commit(stage['commit'])}.", ""]
+        products = stage.get("products")
         if products:
             lines += ["| product | bytes | SHA-256 |", "|---|---|---|"]
             lines += [f"| {name} | {made['bytes']} | `{made['sha256']}` |" for name, made in products.items()]

@@ -1,6 +1,6 @@
-"""A reproduction: every step once, in order, each with a record of what it was made from and what it made.
+"""A reproduction: every stage once, in order, each with a record of what it was made from and what it made.
 
-`OUT/records/STEP.json` says how far a step is. A step that is done and whose inputs have not changed since is not run
+`OUT/records/STAGE.json` says how far a stage is. One that is done and whose inputs have not changed since is not run
 again; one that was stopped or killed is continued by the resume of its own commands; one whose inputs have changed is
 begun from nothing, and what it had made before is set aside in `OUT/.stale`.
 """
@@ -16,18 +16,19 @@ from functools import partial
 from pathlib import Path
 from threading import Event
 from time import monotonic
-from typing import Any, Literal, Protocol, cast
+from typing import Literal, Protocol, cast
 
 import msgspec
 
 from smash.experiments.environment import commit, load
 from smash.experiments.isolation.lifetime import end_with_parent
-from smash.experiments.reproduction.stages import MadeFrom, Step, Steps, code_hash, file_hash, made_from
+from smash.experiments.reproduction.stages import MadeFrom, Stage, Stages, file_hash, made_from
 from smash.problem.extras import install_line, is_known
 from smash.problem.files.documents import convert, read_bytes, write_text
+from smash.records.record import Commit
 
 HEARTBEAT = 10.0
-"""Seconds between two notes of how long a step has run, so that a kill loses no more of its time."""
+"""Seconds between two notes of how long a stage has run, so that a kill loses no more of its time."""
 PATIENCE = 60.0
 """Seconds that a command has to end by itself once it is asked to."""
 
@@ -40,7 +41,7 @@ Plan = Literal["done", "kept", "to do", "continued", "stale", "not run"]
 
 
 class Product(msgspec.Struct, frozen=True):
-    """One file that a step made."""
+    """One file that a stage made."""
 
     sha256: str
     bytes: int
@@ -61,13 +62,13 @@ class Load(msgspec.Struct):
         self.most = max(self.most, sample)
 
 
-class Record(msgspec.Struct):
-    """`OUT/records/STEP.json`: `seconds` and `load` are over all `starts` of the step."""
+class StageRecord(msgspec.Struct):
+    """`OUT/records/STAGE.json`: `seconds` and `load` are over all `starts` of the stage."""
 
-    step: str
+    stage: str = msgspec.field(name="step")
     state: State
     made_from: MadeFrom
-    commit: dict[str, Any]
+    commit: Commit
     started: str
     load: Load
     ended: str | None = None
@@ -84,119 +85,118 @@ class Record(msgspec.Struct):
 
 @dataclass(frozen=True)
 class Planned:
-    """A step, what is to be done about it, and why in a few words."""
+    """A stage, what is to be done about it, and why in a few words."""
 
-    step: Step
+    stage: Stage
     plan: Plan
     why: str
-    record: Record | None
+    record: StageRecord | None
 
 
 class Display(Protocol):
     """Whoever shows how a reproduction goes."""
 
     def begun(self, planned: Planned, log: Path) -> None:
-        """A step has started."""
+        """A stage has started."""
 
     def running(self, seconds: float) -> None:
-        """The step still runs (asked several times a second)."""
+        """The stage still runs (asked several times a second)."""
 
-    def ended(self, record: Record) -> None:
-        """The step has ended."""
+    def ended(self, record: StageRecord) -> None:
+        """The stage has ended."""
 
 
 class Reproduction:
-    """The steps of one file, made in one directory."""
+    """The stages of one file, made in one directory."""
 
-    def __init__(self, steps: Steps, here: Path, out: Path, keep_stale: bool = False) -> None:
-        self.steps = steps
+    def __init__(self, stages: Stages, here: Path, out: Path, keep_stale: bool = False) -> None:
+        self.stages = stages
         self.here = here.resolve()
         self.out = out.resolve()
         self.keep_stale = keep_stale
-        self._code = code_hash()
 
     def plan(self) -> list[Planned]:
-        """Return what is to be done about each step."""
+        """Return what is to be done about each stage."""
         planned: dict[str, Planned] = {}
-        for step in self.steps.steps:
-            planned[step.name] = self._plan(step, planned)
+        for stage in self.stages.stages:
+            planned[stage.name] = self._plan(stage, planned)
         return list(planned.values())
 
     def run(self, display: Display, stop: Event) -> list[Planned]:
-        """Do what is to be done, step by step; return the steps as they stand afterwards."""
+        """Do what is to be done, stage by stage; return the stages as they stand afterwards."""
         done: dict[str, Planned] = {}
-        for step in self.steps.steps:
-            planned = self._plan(step, done, running=True)
+        for stage in self.stages.stages:
+            planned = self._plan(stage, done, running=True)
             if planned.plan in ("to do", "continued", "stale") and not stop.is_set():
-                display.begun(planned, self.log(step))
+                display.begun(planned, self.log(stage))
                 record = self._run(planned, done, display, stop)
                 display.ended(record)
-                planned = self._plan(step, done, running=True)
-            done[step.name] = planned
+                planned = self._plan(stage, done, running=True)
+            done[stage.name] = planned
         return list(done.values())
 
-    def log(self, step: Step) -> Path:
-        """Return where the output of a step's commands goes."""
-        return self.out / "logs" / f"{step.name}.log"
+    def log(self, stage: Stage) -> Path:
+        """Return where the output of a stage's commands goes."""
+        return self.out / "logs" / f"{stage.name}.log"
 
-    def _plan(self, step: Step, before: dict[str, Planned], running: bool = False) -> Planned:
-        record = self._read(step)
-        if lacking := step.lacking():
-            return Planned(step, "not run", f"not installed: {', '.join(lacking)}{_how_to_get(lacking)}", record)
-        unmade = [name for name in step.after if before[name].plan not in ("done", "kept", "not run")]
-        if running and step.after and not any(before[name].plan in ("done", "kept") for name in step.after):
-            return Planned(step, "not run", f"there is nothing of {', '.join(step.after)}", record)
+    def _plan(self, stage: Stage, before: dict[str, Planned], running: bool = False) -> Planned:
+        record = self._read(stage)
+        if lacking := stage.lacking():
+            return Planned(stage, "not run", f"not installed: {', '.join(lacking)}{_how_to_get(lacking)}", record)
+        unmade = [name for name in stage.after if before[name].plan not in ("done", "kept", "not run")]
+        if running and stage.after and not any(before[name].plan in ("done", "kept") for name in stage.after):
+            return Planned(stage, "not run", f"there is nothing of {', '.join(stage.after)}", record)
         if record is None:
-            return Planned(step, "to do", f"after {', '.join(unmade)}" if unmade else "", None)
-        changes = record.made_from.changes(self._made_from(step, before))
+            return Planned(stage, "to do", f"after {', '.join(unmade)}" if unmade else "", None)
+        changes = record.made_from.changes(self._made_from(stage, before))
         if record.state != "done":
             if changes and not self.keep_stale:
-                return Planned(step, "stale", "; ".join(changes), record)
-            return Planned(step, "continued", record.problem or "it was killed", record)
+                return Planned(stage, "stale", "; ".join(changes), record)
+            return Planned(stage, "continued", record.problem or "it was killed", record)
         if not running:
             changes += [f"{name} is to be made anew" for name in unmade]
         missing, changed = self._damaged(record)
         if changed or (changes and not self.keep_stale):
-            return Planned(step, "stale", "; ".join(changes + changed), record)
+            return Planned(stage, "stale", "; ".join(changes + changed), record)
         if missing:
-            return Planned(step, "continued", "; ".join(missing), record)
-        return Planned(step, "kept" if changes else "done", "; ".join(changes), record)
+            return Planned(stage, "continued", "; ".join(missing), record)
+        return Planned(stage, "kept" if changes else "done", "; ".join(changes), record)
 
-    def _made_from(self, step: Step, before: dict[str, Planned]) -> MadeFrom:
-        uses = {name: made.products_hash() for name in step.after if (made := before[name].record) is not None}
-        return made_from(step, self.here, self._code, uses)
+    def _made_from(self, stage: Stage, before: dict[str, Planned]) -> MadeFrom:
+        uses = {name: made.products_hash() for name in stage.after if (made := before[name].record) is not None}
+        return made_from(stage, self.here, uses)
 
-    def _damaged(self, record: Record) -> tuple[list[str], list[str]]:
+    def _damaged(self, record: StageRecord) -> tuple[list[str], list[str]]:
         """Return in words the products that are missing, and those that somebody has changed."""
         there = {name: self.out / name for name in record.products if (self.out / name).is_file()}
         changed = [name for name, file in there.items() if file_hash(file) != record.products[name].sha256]
         missing = [f"{name} is missing" for name in record.products if name not in there]
         return missing, [f"{name} is not as it was made" for name in changed]
 
-    def _run(self, planned: Planned, before: dict[str, Planned], display: Display, stop: Event) -> Record:
-        step = planned.step
-        made, now = self._made_from(step, before), datetime.now(UTC).isoformat(timespec="seconds")
+    def _run(self, planned: Planned, before: dict[str, Planned], display: Display, stop: Event) -> StageRecord:
+        stage = planned.stage
+        made, now = self._made_from(stage, before), datetime.now(UTC).isoformat(timespec="seconds")
         record = planned.record
         if planned.plan != "continued" or record is None:
-            self._set_aside(step)
-            record = Record(step.name, "begun", made, commit(), now, Load(load(), load(), load()))
+            self._set_aside(stage)
+            record = StageRecord(stage.name, "begun", made, commit(), now, Load(load(), load(), load()))
         record.starts += 1
         record.state, record.problem, record.exit_code, record.ended = "begun", "", 0, None
-        (self.out / step.name).mkdir(parents=True, exist_ok=True)
+        (self.out / stage.name).mkdir(parents=True, exist_ok=True)
         self._write(record)
-        self._run_commands(step, record, display, stop)
+        self._run_commands(stage, record, display, stop)
         if not record.problem:
-            record.products = self._products(step, record)
+            record.products = self._products(stage, record)
         if not stop.is_set():
             record.state = "failed" if record.problem else "done"
         record.ended = datetime.now(UTC).isoformat(timespec="seconds")
         self._write(record)
         return record
 
-    def _run_commands(self, step: Step, record: Record, display: Display, stop: Event) -> None:
-        log = self.log(step)
+    def _run_commands(self, stage: Stage, record: StageRecord, display: Display, stop: Event) -> None:
+        log = self.log(stage)
         log.parent.mkdir(parents=True, exist_ok=True)
-        for words, text in zip(step.words(self.out, self.here), step.commands, strict=True):
+        for words, text in zip(stage.words(self.out, self.here), stage.commands, strict=True):
             with open(log, "a", encoding="utf-8") as said:
                 said.write(f"$ {text}\n")
                 said.flush()
@@ -209,9 +209,9 @@ class Reproduction:
                 record.problem = f"`{text}` ended with exit code {code}: {last_line(log)}"
                 return
 
-    def _products(self, step: Step, record: Record) -> dict[str, Product]:
+    def _products(self, stage: Stage, record: StageRecord) -> dict[str, Product]:
         products = {}
-        for pattern in step.products:
+        for pattern in stage.products:
             files = [file for file in sorted(self.out.glob(pattern)) if file.is_file()]
             if not files:
                 record.problem = f"it made no {pattern}"
@@ -220,14 +220,14 @@ class Reproduction:
                 products[name] = Product(file_hash(file), file.stat().st_size)
         return products
 
-    def _set_aside(self, step: Step) -> None:
-        """Move what the step had made before to a folder of its own, its record and log with it."""
-        parts = [self.out / step.name, self._path(step.name), self.log(step)]
+    def _set_aside(self, stage: Stage) -> None:
+        """Move what the stage had made before to a folder of its own, its record and log with it."""
+        parts = [self.out / stage.name, self._path(stage.name), self.log(stage)]
         parts = [part for part in parts if part.exists()]
         if not parts:
             return
         number = 1
-        while (aside := self.out / STALE / f"{step.name}-{number}").exists():
+        while (aside := self.out / STALE / f"{stage.name}-{number}").exists():
             number += 1
         aside.mkdir(parents=True)
         for part in parts:
@@ -236,24 +236,24 @@ class Reproduction:
     def _path(self, name: str) -> Path:
         return self.out / "records" / f"{name}.json"
 
-    def _read(self, step: Step) -> Record | None:
-        path = self._path(step.name)
+    def _read(self, stage: Stage) -> StageRecord | None:
+        path = self._path(stage.name)
         if not path.is_file():
             return None
         try:
             document = msgspec.json.decode(read_bytes(path))
         except msgspec.DecodeError:
-            return None  # cut off by a full disk: the step is done anew
-        return cast(Record, convert(document, Record, str(path)))
+            return None  # cut off by a full disk: the stage is done anew
+        return cast(StageRecord, convert(document, StageRecord, str(path)))
 
-    def _write(self, record: Record) -> None:
-        path = self._path(record.step)
+    def _write(self, record: StageRecord) -> None:
+        path = self._path(record.stage)
         path.parent.mkdir(parents=True, exist_ok=True)
         write_text(path, msgspec.json.format(msgspec.json.encode(record), indent=1).decode() + "\n")
 
 
 def _run_command(
-    words: Sequence[str], said: int, record: Record, note: Callable[[], None], display: Display, stop: Event
+    words: Sequence[str], said: int, record: StageRecord, note: Callable[[], None], display: Display, stop: Event
 ) -> int:
     """Run one command to its end and keep the record's time; it is asked to end where `stop` is set."""
     process = subprocess.Popen(

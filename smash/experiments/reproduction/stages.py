@@ -1,7 +1,7 @@
-"""The steps of a reproduction: a short TOML file, and what each step's products are made from.
+"""The stages of a reproduction: a short TOML file, and what each stage's products are made from.
 
-A step's commands are words, not shell: the first is `smash` or `python`, `{out}` is the directory of the products and
-`{here}` that of the file. A step writes into `{out}/NAME` alone.
+A stage's commands are words, not shell: the first is `smash` or `python`, `{out}` is the directory of the products and
+`{here}` that of the file. A stage writes into `{out}/NAME` alone.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from typing import cast
 
 import msgspec
 
-import smash
 from smash.experiments.environment import versions
+from smash.experiments.reproduction.code import code_hash, rooms_of
 from smash.planners.registry import DEFAULT
 from smash.problem.errors import MalformedFile
 from smash.problem.files.documents import convert, parse_toml, read_bytes
@@ -27,17 +27,15 @@ from smash.problem.files.documents import convert, parse_toml, read_bytes
 PROGRAMS = {"smash": (sys.executable, "-m", "smash"), "python": (sys.executable,)}
 PACKAGES = ("coal", "matplotlib", "ompl", "pandas", "pin", "pybullet", "toppra")
 """Distributions that decide what is made, beside those that decide what a planner answers."""
-CODE = ("smash", "baselines", "analysis", "domains")
-"""The folders whose content decides what a command makes."""
 
 
-class Step(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+class Stage(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """One `[[steps]]` table.
 
     `minutes` is the estimated time on 2 quiet cores; `products` are patterns below `{out}`, each of which must be met;
-    `after` names earlier steps whose products it uses, as far as there are any; `requires` packages without which it is
-    not run; `leaves_out` says what
-    of the whole it does not do, and why; `not_copied` are products that are too large for `--copy-to`.
+    `after` names earlier stages whose products it uses, as far as there are any; `requires` packages without which it
+    is not run; `leaves_out` says what of the whole it does not do, and why; `not_copied` are products that are too
+    large for `--copy-to`.
     """
 
     name: str
@@ -56,7 +54,7 @@ class Step(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
         return [_command(shlex.split(command), places) for command in self.commands]
 
     def inputs(self, here: Path) -> list[Path]:
-        """Return the files beside the steps file that the commands name."""
+        """Return the files beside the file of stages that the commands name."""
         words = [word for command in self.commands for word in shlex.split(command)]
         named = [here / word.removeprefix("{here}/") for word in words if word.startswith("{here}/")]
         return sorted({file for file in named if file.is_file()})
@@ -66,16 +64,16 @@ class Step(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
         return [package for package in self.requires if not _installed(package)]
 
 
-class Steps(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """A steps file."""
+class Stages(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """A file of stages."""
 
     name: str
     about: str
-    steps: list[Step]
+    stages: list[Stage] = msgspec.field(name="steps")
 
 
 class MadeFrom(msgspec.Struct, frozen=True):
-    """Whatever decides a step's products: hashes of its inputs and of the code, versions of the packages."""
+    """Whatever decides a stage's products: hashes of its inputs and of its code, versions of the packages."""
 
     commands: list[str]
     code: str
@@ -100,48 +98,48 @@ class MadeFrom(msgspec.Struct, frozen=True):
         return words
 
 
-def read_steps(path: Path) -> Steps:
-    """Read a steps file.
+def read_stages(path: Path) -> Stages:
+    """Read a file of stages.
 
     Raises:
         MalformedFile: with one line that says where and what is allowed.
     """
     where = os.fspath(path)
-    steps = cast(Steps, convert(parse_toml(read_bytes(path), where), Steps, where))
-    _check(steps, where)
-    return steps
+    stages = cast(Stages, convert(parse_toml(read_bytes(path), where), Stages, where))
+    _check(stages, where)
+    return stages
 
 
-def _check(steps: Steps, where: str) -> None:
+def _check(stages: Stages, where: str) -> None:
     def expect(holds: bool, part: str, problem: str) -> None:
         if not holds:
             raise MalformedFile(where, f"`{part}`: {problem}")
 
     plain = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
-    expect(plain.fullmatch(steps.name) is not None, "name", f"{steps.name!r} is no plain file name")
-    expect(bool(steps.steps), "steps", "empty; at least one is needed")
+    expect(plain.fullmatch(stages.name) is not None, "name", f"{stages.name!r} is no plain file name")
+    expect(bool(stages.stages), "steps", "empty; at least one is needed")
     before: list[str] = []
-    for index, step in enumerate(steps.steps):
+    for index, stage in enumerate(stages.stages):
         at = f"steps[{index}]"
-        fits = plain.fullmatch(step.name) is not None and step.name not in RESERVED
-        expect(fits, f"{at}.name", f"{step.name!r} is no plain folder name, or one of {', '.join(RESERVED)}")
-        expect(step.name not in before, f"{at}.name", f"{step.name!r} stands twice")
-        expect(step.minutes > 0, f"{at}.minutes", f"{step.minutes} is not allowed; above 0")
-        expect(bool(step.commands), f"{at}.commands", "empty; at least one is needed")
-        for command in step.commands:
+        fits = plain.fullmatch(stage.name) is not None and stage.name not in RESERVED
+        expect(fits, f"{at}.name", f"{stage.name!r} is no plain folder name, or one of {', '.join(RESERVED)}")
+        expect(stage.name not in before, f"{at}.name", f"{stage.name!r} stands twice")
+        expect(stage.minutes > 0, f"{at}.minutes", f"{stage.minutes} is not allowed; above 0")
+        expect(bool(stage.commands), f"{at}.commands", "empty; at least one is needed")
+        for command in stage.commands:
             problem = _problem(command)
             expect(not problem, f"{at}.commands", problem)
-        expect(bool(step.products), f"{at}.products", "empty; at least one is needed")
-        for product in step.products:
-            inside = product.startswith(f"{step.name}/") and ".." not in Path(product).parts
-            expect(inside, f"{at}.products", f"{product!r} does not lie in the step's folder {step.name}/")
-        for name in step.after:
-            expect(name in before, f"{at}.after", f"{name!r} is no earlier step; there are: {', '.join(before)}")
-        before.append(step.name)
+        expect(bool(stage.products), f"{at}.products", "empty; at least one is needed")
+        for product in stage.products:
+            inside = product.startswith(f"{stage.name}/") and ".." not in Path(product).parts
+            expect(inside, f"{at}.products", f"{product!r} does not lie in the stage's folder {stage.name}/")
+        for name in stage.after:
+            expect(name in before, f"{at}.after", f"{name!r} is no earlier stage; there are: {', '.join(before)}")
+        before.append(stage.name)
 
 
 RESERVED = ("logs", "records", "manifest.json", "MANIFEST.md")
-"""Names in the directory of a reproduction that are not a step's."""
+"""Names in the directory of a reproduction that are not a stage's."""
 
 
 def _problem(command: str) -> str:
@@ -171,22 +169,11 @@ def _installed(package: str) -> bool:
     return True
 
 
-def made_from(step: Step, here: Path, code: str, uses: dict[str, str]) -> MadeFrom:
-    """Return what the step would be made from now; `uses` has a hash of the products of each step that it uses."""
-    inputs = {file.name: file_hash(file) for file in step.inputs(here)}
+def made_from(stage: Stage, here: Path, uses: dict[str, str]) -> MadeFrom:
+    """Return what the stage would be made from now; `uses` has a hash of the products of each stage that it uses."""
+    inputs = {file.name: file_hash(file) for file in stage.inputs(here)}
     packages = versions(DEFAULT) | {name: version(name) for name in PACKAGES if _installed(name)}
-    return MadeFrom(list(step.commands), code, packages, inputs, uses)
-
-
-def code_hash() -> str:
-    """Return a hash of all of this code as it stands, committed or not."""
-    total = hashlib.sha256()
-    root = Path(smash.__file__).parent.parent
-    for folder in CODE:
-        for file in sorted((root / folder).rglob("*")):
-            if file.is_file() and "__pycache__" not in file.parts:
-                total.update(f"{file.relative_to(root)}\0{file_hash(file)}\n".encode())
-    return total.hexdigest()
+    return MadeFrom(list(stage.commands), code_hash(rooms_of(stage.commands)), packages, inputs, uses)
 
 
 def file_hash(file: Path) -> str:

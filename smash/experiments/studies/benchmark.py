@@ -15,11 +15,13 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from time import perf_counter
 
-from smash.planners.protocol import PlanResult, SolveOptions
+from smash.planners.protocol import Settings, SolveOptions, ask
 from smash.planners.registry import get_planner
 from smash.problem.errors import SmashError
 from smash.problem.files.documents import write_text
-from smash.problem.model import Instance
+from smash.problem.model import PlanOptions
+from smash.problem.plan import Plan
+from smash.problem.problem import Problem
 from smash.problem.sets.open_instances import Shape, draw_instance
 from smash.problem.sets.suites import PAPER_SUITES, read_suite
 
@@ -28,12 +30,14 @@ LARGE = ((1000, 50, True), (100, 10, False), (200, 20, False), (200, 20, True))
 """Blocks, stacks, topple; as many buffers as blocks."""
 SEEDS = (1, 2, 3)
 
+COLD = Settings()
 
-def timed(planner: str, instance: Instance, options: SolveOptions) -> tuple[PlanResult, float]:
+
+def timed(planner: str, problem: Problem, settings: Settings = COLD) -> tuple[Plan, float]:
     """Solve once; return the result and the wall time [s]."""
     chosen = get_planner(planner)
     started = perf_counter()
-    result = chosen.solve(instance, options, BUDGET)
+    result = ask(chosen, problem, settings, BUDGET)
     return result, perf_counter() - started
 
 
@@ -50,7 +54,10 @@ def layered_rows() -> Iterator[str]:
         for topple in (True, False):
             times, proven = [], []
             for warm in (None, "greedy"):
-                results = [timed("smash-layered", i, SolveOptions(topple, None, warm)) for i in read_suite(suite)]
+                results = [
+                    timed("smash-layered", Problem(instance, PlanOptions(topple)), Settings(warm_start=warm))
+                    for instance in read_suite(suite)
+                ]
                 proof = [seconds for result, seconds in results if result.status == "optimal"]
                 times.append(spread([result.incumbents[0].seconds for result, _ in results if result.incumbents]))
                 times.append(spread(proof))
@@ -88,7 +95,7 @@ def large_rows() -> Iterator[str]:
         for blocks, stacks, topple in LARGE:
             for seed in SEEDS:
                 instance = draw_instance(f"wide-{seed}", Shape(blocks, stacks, blocks), random.Random(seed))
-                result, seconds = timed(planner, instance, SolveOptions(topple))
+                result, seconds = timed(planner, Problem(instance, PlanOptions(topple)))
                 shape = f"{planner} | {blocks} | {stacks} | {'topple' if topple else 'no topple'} | {seed}"
                 yield f"| {shape} | {result.status} | {result.cost} | {result.lower_bound} | {seconds:.2f} |"
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from scipy.optimize import nnls
@@ -19,6 +18,7 @@ from smash.problem.errors import IllegalAction
 from smash.problem.files.plans import action_from_list
 from smash.problem.model import Instance, State
 from smash.problem.rules import Law
+from smash.records.episodes import Performed
 
 MILLIMETRES = 1000.0
 
@@ -57,27 +57,27 @@ class Fit:
 
 
 def durations(
-    episode: Mapping[str, Any], instance: Instance, positions: Mapping[str, tuple[float, float]]
+    actions: Iterable[Performed], instance: Instance, positions: Mapping[str, tuple[float, float]]
 ) -> Iterator[Duration]:
-    """Yield the actions of a `smash-episode/1` object up to the first that did not go as planned.
+    """Yield the actions that an episode carried out, up to the first that did not go as planned.
 
     Args:
-        episode: The object.
+        actions: As the episode records them.
         instance: What was rearranged.
         positions: Where places are [m].
     """
     law = Law(replace(instance, costs=Costs(travel=MILLIMETRES, positions=positions)))
     state = State.start_of(instance)
-    for row in episode["actions"]:
-        action = action_from_list(row["action"], "episode")
-        if row["outcome"] != "done" or row["attempts"] > 1 or law.refusal(state, action) is not None:
+    for row in actions:
+        action = action_from_list(row.action, "episode")
+        if row.outcome != "done" or row.attempts > 1 or law.refusal(state, action) is not None:
             return
         travel = (law.cost(state, action) - 1) / MILLIMETRES
         try:
             law.apply(state, action)
         except IllegalAction:
             return
-        yield Duration(str(row["action"][0]), travel, float(row["times"]["execution"]))
+        yield Duration(str(row.action[0]), travel, float(row.times.execution))
 
 
 def fit(measured: Iterable[Duration]) -> Fit:

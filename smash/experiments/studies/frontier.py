@@ -7,9 +7,10 @@ from dataclasses import asdict, dataclass
 from time import perf_counter
 from typing import Any
 
-from smash.planners.protocol import Planner, SolveOptions
-from smash.problem.model import Instance
-from smash.problem.sets.suites import with_buffers
+from smash.planners.protocol import Planner, Settings, ask
+from smash.problem.buffers import with_buffers
+from smash.problem.model import Instance, PlanOptions
+from smash.problem.problem import Problem
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,14 +51,14 @@ def frontier(
     for buffers in range(held, most + 1):
         for topple in (False, True):
             started = perf_counter()
-            options = SolveOptions(topple, max_topple if topple else None)
-            result = planner.solve(with_buffers(instance, buffers), options, budget)
+            problem = Problem(with_buffers(instance, buffers), PlanOptions(topple, max_topple if topple else None))
+            result = ask(planner, problem, Settings(), budget)
             yield FrontierPoint(
                 instance=instance.name,
                 blocks=len(instance.blocks),
                 buffers=buffers,
                 topple=topple,
-                max_topple=options.max_topple,
+                max_topple=problem.options.max_topple,
                 status=result.status,
                 cost=result.cost,
                 lower_bound=result.lower_bound,

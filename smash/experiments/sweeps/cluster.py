@@ -62,7 +62,7 @@ def slurm_script(runs: Sequence[Run], experiment: Path, out: Path, workers: int)
     longest = max((run.job.budget for run in runs), default=0.0)
     hours = math.ceil((seconds + longest + 600) / 3600)
     memory = max((run.job.memory for run in runs), default=0) + WORKERS_OWN_MEMORY
-    cores = max((run.job.options.threads for run in runs), default=1)
+    cores = max((run.job.settings.threads for run in runs), default=1)
     name = runs[0].experiment if runs else experiment.stem
     where, file, directory = (shlex.quote(str(path)) for path in (Path.cwd(), experiment.resolve(), out.resolve()))
     python = shlex.quote(sys.executable)

@@ -10,6 +10,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from smash.experiments.sweeps.experiment import Run
+from smash.records.runs import RunRecord
 
 
 class Progress:
@@ -51,17 +52,17 @@ class Progress:
             self._begun += 1
         self._show()
 
-    def ended(self, run: Run, record: dict[str, Any]) -> None:
+    def ended(self, run: Run, record: RunRecord) -> None:
         """Count a run that has ended."""
         with self._lock:
             self._done += 1
             self._ended += 1
-            self.outcomes[record["outcome"]] += 1
+            self.outcomes[record.outcome] += 1
         if self._bar is None:
-            cost = "no plan" if record["cost"] is None else f"cost {record['cost']}"
+            cost = "no plan" if record.cost is None else f"cost {record.cost}"
             name = f"{run.suite}/{_one_line(run.job.instance.name)}"
-            where = f"{name} B={record['buffers']} {run.variant} {run.job.budget:g} s"
-            words = f"[{self._done}/{self._total}] {run.label}: {where}: {record['outcome']}, {cost}"
+            where = f"{name} B={record.buffers} {run.variant} {run.job.budget:g} s"
+            words = f"[{self._done}/{self._total}] {run.label}: {where}: {record.outcome}, {cost}"
             print(f"{words} ({self._words()})", file=sys.stderr)
         self._show()
 

@@ -14,24 +14,25 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Literal, TypeVar, cast
+from typing import TypeVar, cast
 
 import msgspec
 
 from smash.experiments.isolation.job import DEFAULT_MEMORY, Job
-from smash.planners.protocol import MOST_THREADS, SolveOptions
+from smash.planners.protocol import MOST_THREADS, Settings, SolveOptions
 from smash.planners.registry import get_planner, why_unknown
 from smash.problem.actions.registry import FAMILY
+from smash.problem.buffers import with_buffers
 from smash.problem.errors import MalformedFile, Unsupported
 from smash.problem.files.documents import convert, parse_toml, read_bytes
 from smash.problem.files.instances import instance_document
 from smash.problem.model import Instance, PlanOptions
-from smash.problem.sets.suites import read_suite, suite_names, with_buffers
+from smash.problem.problem import Problem
+from smash.problem.sets.suites import read_suite, suite_names
+from smash.records.runs import RunKind
 
-RunKind = Literal["anytime", "budget", "cutoff"]
 FURTHER = tuple(name for name in FAMILY if name != "topple")
 """Aggregating actions that a variant can leave out by `-no-NAME`."""
-"""`anytime`: stands for every smaller budget too; `budget`: for its own alone; `cutoff`: checks that reading."""
 
 INSTANCES = "instances"
 SETS = "sets.json"
@@ -205,29 +206,18 @@ def _entry_runs(experiment: Experiment, entry: PlannerEntry, base: Path) -> Iter
             for count in counts:
                 instance = filed if count is None else with_buffers(filed, count)
                 for variant in entry.variants or experiment.variants:
+                    allowed = variant_options(variant)
+                    assert allowed is not None
+                    problem = Problem(instance, allowed)
                     for seed in experiment.seeds:
-                        options = _options(entry, variant, seed)
+                        settings = Settings(entry.warm_start, entry.horizon, entry.threads, seed)
                         for budget in budgets if kind == "budget" else budgets[-1:]:
                             stands_for = (budget,) if kind == "budget" else tuple(budgets)
-                            job = Job(entry.name, instance, options, float(budget), experiment.memory)
+                            job = Job(entry.name, problem, settings, float(budget), experiment.memory)
                             yield (
                                 index,
                                 _run(experiment, entry.label or entry.name, suite, variant, kind, stands_for, job),
                             )
-
-
-def _options(entry: PlannerEntry, variant: str, seed: int) -> SolveOptions:
-    allowed = variant_options(variant)
-    assert allowed is not None
-    return SolveOptions(
-        allowed.topple,
-        allowed.max_topple,
-        entry.warm_start,
-        entry.horizon,
-        entry.threads,
-        seed,
-        without=allowed.without,
-    )
 
 
 def _run(
@@ -245,7 +235,8 @@ def _cutoffs(run: Run) -> Iterator[Run]:
 
 
 def _key(label: str, suite: str, kind: RunKind, job: Job) -> str:
-    meant = [label, suite, kind, job.planner, asdict(job.options), job.budget, job.memory]
+    asked = asdict(SolveOptions.of(job.options, job.settings))  # in one, as in the keys of earlier records
+    meant = [label, suite, kind, job.planner, asked, job.budget, job.memory]
     return hashlib.sha256(json.dumps([*meant, instance_hash(job.instance)]).encode()).hexdigest()[:20]
 
 

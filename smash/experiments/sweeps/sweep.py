@@ -13,16 +13,18 @@ from concurrent.futures import Executor, Future
 from datetime import UTC, datetime
 from functools import partial
 from threading import Event
-from typing import Any, Protocol
+from typing import Protocol
 
-from smash.experiments.environment import load
+from smash.experiments.environment import commit, load, machine, versions
 from smash.experiments.isolation.caller import run_isolated
-from smash.experiments.sweeps.experiment import Run
-from smash.experiments.sweeps.records import Records, record_of
+from smash.experiments.isolation.job import Report
+from smash.experiments.sweeps.experiment import Run, instance_hash
 from smash.problem.errors import Interrupted, SmashError
+from smash.problem.files.instances import instance_document
+from smash.records.runs import RUN_FORMAT, RunRecord, VerdictField, plan_fields
+from smash.records.writing import Writer
 
-Record = dict[str, Any]
-_Future = Future[Record | None]
+_Future = Future[RunRecord | None]
 _Ended = queue.SimpleQueue[_Future]
 
 
@@ -38,11 +40,51 @@ class Display(Protocol):
     def begun(self, run: Run) -> None:
         """A run has started."""
 
-    def ended(self, run: Run, record: Record) -> None:
+    def ended(self, run: Run, record: RunRecord) -> None:
         """A run has ended and is recorded."""
 
 
-def execute(run: Run, stop: Event | None = None, begun: Callable[[Run], None] | None = None) -> Record | None:
+def record_of(run: Run, report: Report, started: datetime, load_before: float) -> RunRecord:
+    """Return the record of a finished run: the plan, and all that it took to make it."""
+    job, verdict = run.job, report.verdict
+    return RunRecord(
+        format=RUN_FORMAT,
+        key=run.key,
+        experiment=run.experiment,
+        label=run.label,
+        suite=run.suite,
+        variant=run.variant,
+        kind=run.kind,
+        **plan_fields(report.plan(job)),
+        outcome=report.outcome,
+        reason=report.reason,
+        verdict=None if verdict is None else VerdictField(verdict.accepted, verdict.reason, verdict.step),
+        budget=job.budget,
+        budgets=list(run.budgets),
+        memory_limit_mib=job.memory,
+        warm_start=job.settings.warm_start,
+        horizon=job.settings.horizon,
+        threads=job.settings.threads,
+        seed=job.settings.seed,
+        blocks=len(job.instance.blocks),
+        stacks=len(job.instance.stacks),
+        buffers=len(job.instance.buffers),
+        instance_hash=instance_hash(job.instance),
+        instance_document=instance_document(job.instance),
+        wall_seconds=report.wall_seconds,
+        cpu_seconds=report.cpu_seconds,
+        memory_mib=report.memory_mib,
+        details=report.details,
+        log=report.log if report.outcome in ("crashed", "memory", "refused") else "",
+        started=started.astimezone(UTC).isoformat(timespec="milliseconds"),
+        load_average=(load_before, load()),
+        versions=versions(job.planner),
+        commit=commit(),
+        machine=machine(),
+    )
+
+
+def execute(run: Run, stop: Event | None = None, begun: Callable[[Run], None] | None = None) -> RunRecord | None:
     """Do one run and return its record; None where `stop` was set before it ended."""
     if stop is not None and stop.is_set():
         return None
@@ -53,16 +95,16 @@ def execute(run: Run, stop: Event | None = None, begun: Callable[[Run], None] | 
     return None if report.outcome == "interrupted" else record_of(run, report, started, load_before)
 
 
-def local_task(stop: Event, display: Display) -> Callable[[Run], Record | None]:
+def local_task(stop: Event, display: Display) -> Callable[[Run], RunRecord | None]:
     """Return the task for a pool in this process: it can be stopped, and tells the display when it begins."""
     return partial(execute, stop=stop, begun=display.begun)
 
 
 def sweep(
     runs: Iterable[Run],
-    records: Records,
+    records: Writer[RunRecord],
     executor: Executor,
-    task: Callable[[Run], Record | None],
+    task: Callable[[Run], RunRecord | None],
     display: Display,
     stop: Event,
 ) -> None:
@@ -92,7 +134,7 @@ def sweep(
 
 
 def _collect(
-    waiting: dict[_Future, Run], ended: _Ended, records: Records, display: Display, stop: Event
+    waiting: dict[_Future, Run], ended: _Ended, records: Writer[RunRecord], display: Display, stop: Event
 ) -> list[BaseException]:
     """Record each run as it ends; return the errors of those that the executor gave up."""
     lost: list[BaseException] = []

@@ -17,7 +17,7 @@ from smash.planners.astar.store import free_memory, grown, make_store, most_node
 from smash.planners.astar.task import Setting, make_setting
 from smash.planners.greedy.shorten import shorten
 from smash.problem.model import PlanOptions
-from smash.problem.views.numbered import Indexed, Step, cost_of
+from smash.problem.views.numbered import Numbered, Step, cost_of
 
 FIRST_WIDTH = 4
 FIRST_NODES = 1 << 10
@@ -44,7 +44,7 @@ class BeamSearch:
     """
 
     def __init__(
-        self, problem: Indexed, options: PlanOptions, upper: int, seed: int = 0, memory: int | None = None
+        self, problem: Numbered, options: PlanOptions, upper: int, seed: int = 0, memory: int | None = None
     ) -> None:
         self.problem = problem
         self.upper = upper

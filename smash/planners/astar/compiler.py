@@ -10,7 +10,7 @@ from smash.planners.astar.engine import StoreEngine
 from smash.planners.astar.store import filled
 from smash.planners.astar.task import make_setting
 from smash.problem.model import Instance, PlanOptions, StacksGoal
-from smash.problem.views.numbered import Indexed
+from smash.problem.views.numbered import Numbered
 
 
 class Compiler:
@@ -38,7 +38,7 @@ class Compiler:
         """Call every function once, on a problem of one block."""
         goal = StacksGoal({"s": ("b",)})
         instance = Instance("warm", ("b",), ("s",), (), {"s": ()}, goal, ("b",))
-        problem = Indexed.of(instance)
+        problem = Numbered.of(instance)
         setting = make_setting(problem, PlanOptions())
         assert setting is not None
         engine = StoreEngine(setting, compiled_code(), True)

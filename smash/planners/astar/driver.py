@@ -12,7 +12,7 @@ from smash.planners.astar.search import BEST, EXPANDED, FLOOR, FULL, PROVEN, UPP
 from smash.planners.astar.store import free_memory, grown, most_nodes
 from smash.planners.astar.task import make_setting
 from smash.problem.model import PlanOptions
-from smash.problem.views.numbered import Indexed, Step
+from smash.problem.views.numbered import Numbered, Step
 
 INTERPRETED_NODES = 1500
 """Nodes filed before numba is imported: smaller searches end sooner without it."""
@@ -45,7 +45,7 @@ class StateSearch:
 
     def __init__(
         self,
-        problem: Indexed,
+        problem: Numbered,
         options: PlanOptions,
         upper: int,
         memory: int | None = None,

@@ -9,7 +9,7 @@ from smash.planners.astar.search import BEST, Store
 from smash.planners.astar.store import filled, make_store
 from smash.planners.astar.task import Ints, Setting
 from smash.planners.astar.walk import Walk
-from smash.problem.views.numbered import Indexed, Step
+from smash.problem.views.numbered import Numbered, Step
 
 WORK = {False: 3_000, True: 200_000}
 """What a share of expansions is worth, in blocks squared times locations: some milliseconds between two looks at
@@ -51,7 +51,7 @@ class Engine:
         """Return the start as a filed state."""
         return filled(self.setting.start, self.compiled, "u1")
 
-    def steps(self, problem: Indexed, moves: Iterable[Move]) -> list[Step]:
+    def steps(self, problem: Numbered, moves: Iterable[Move]) -> list[Step]:
         """Return `moves` from the start as steps, each with the direct moves that follow it."""
         walk = Walk(problem, self.setting.class_of)
         self._walk_trail(walk, self.at_start() // 2)

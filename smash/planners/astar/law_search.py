@@ -15,8 +15,7 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import Literal
 
-from smash.problem.actions.registry import kinds_of
-from smash.problem.model import TABLE, Action, Instance, Pick, Place, PlanOptions, State
+from smash.problem.model import TABLE, Action, Instance, Pick, Place, State
 from smash.problem.rules import Law
 from smash.problem.views.distances import Estimate
 
@@ -45,7 +44,7 @@ class _Node:
         return tuple(action for step in reversed(steps) for action in step)
 
 
-class FamilySearch:
+class LawSearch:
     """One search. `run` goes on until a plan is found, nothing cheaper is left, or the time is over.
 
     Attributes:
@@ -53,22 +52,18 @@ class FamilySearch:
         ended: why it ended for good: `exhausted` (nothing is cheaper than `below`) or `memory`.
     """
 
-    def __init__(
-        self, instance: Instance, options: PlanOptions, *, weight: float = 1.0, below: float = math.inf
-    ) -> None:
-        self.instance = instance
-        self.law = Law(instance, options)
-        self.kinds = kinds_of(instance, options)
-        self.options = options
-        self.estimate = Estimate(instance, options)
+    def __init__(self, law: Law, *, weight: float = 1.0, below: float = math.inf) -> None:
+        self.law = law
+        self.instance = law.instance
+        self.estimate = Estimate(law)
         self.weight = weight
         self.below = below
         self.expanded = 0
         self.ended: Literal["exhausted", "memory"] | None = None
-        start = State.start_of(instance)
+        start = State.start_of(self.instance)
         first = self.estimate.of(start)
         self.bound = math.ceil(first - SLACK) if first < math.inf else 0
-        self._alike = _interchangeable(instance)
+        self._alike = _interchangeable(self.instance)
         self._closed: dict[Hashable, int] = {}
         self._ties = itertools.count()
         self._open: list[tuple[float, float, int, int, _Node | None, tuple[Action, ...], str | None]] = []
@@ -142,10 +137,10 @@ class FamilySearch:
     def _expand(self, node: _Node, rest: float) -> None:
         state, cost, law = node.state, node.cost, self.law
         self._transfers(node, rest)
-        for kind in self.kinds:
-            for action in kind.legal(self.instance, self.options, state):
+        for kind in law.kinds:
+            for action in kind.legal(self.instance, law.options, state):
                 after = state.copy()
-                kind.apply(after, action)
+                law.carry_out(after, action)
                 self._push(self.estimate.of(after), cost + law.cost(state, action), node, (action,), None)
 
     def _transfers(self, node: _Node, rest: float) -> None:

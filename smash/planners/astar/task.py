@@ -13,7 +13,7 @@ from collections.abc import MutableSequence
 from typing import NamedTuple
 
 from smash.problem.model import PlanOptions
-from smash.problem.views.numbered import Indexed
+from smash.problem.views.numbered import Numbered
 from smash.problem.views.targets import Piles, goal_piles, towers_of
 
 Ints = MutableSequence[int]
@@ -103,7 +103,7 @@ class Setting(NamedTuple):
     start: list[int]
 
 
-def make_setting(problem: Indexed, options: PlanOptions) -> Setting | None:
+def make_setting(problem: Numbered, options: PlanOptions) -> Setting | None:
     """Return the numbers of a problem, or None where a byte does not hold what can be below a block."""
     wanted = goal_piles(problem)
     topples = [int(options.topple and location < problem.stacks) for location in range(problem.locations)]
@@ -181,7 +181,7 @@ def _scratch(blocks: int, lines: int, classes: int) -> dict[str, list[int]]:
     return {name: [0] * size for name, size in sizes.items()}
 
 
-def _filed(problem: Indexed, class_of: list[int], classes: int) -> list[int]:
+def _filed(problem: Numbered, class_of: list[int], classes: int) -> list[int]:
     row = [problem.blocks + classes] * problem.blocks
     for location, pile in enumerate(problem.start):
         below = problem.blocks + class_of[location]

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from smash.planners.astar.task import TOPPLED
-from smash.problem.views.numbered import ON_TABLE, TOPPLE, Indexed, Step
+from smash.problem.views.numbered import ON_TABLE, TOPPLE, Numbered, Step
 
 
 class Walk:
     """Carries out the search's moves on the locations by number, choosing the first free one of a class."""
 
-    def __init__(self, problem: Indexed, class_of: list[int]) -> None:
+    def __init__(self, problem: Numbered, class_of: list[int]) -> None:
         self.steps: list[Step] = []
         self._blocks = problem.blocks
         self._class_of = class_of

@@ -10,7 +10,7 @@ import math
 import random
 from collections.abc import Sequence
 
-from smash.problem.views.numbered import ON_TABLE, TOPPLE, Indexed, Step
+from smash.problem.views.numbered import ON_TABLE, TOPPLE, Numbered, Step
 from smash.problem.views.targets import Piles
 
 NEVER = math.inf
@@ -32,7 +32,7 @@ class Construction:
 
     def __init__(
         self,
-        problem: Indexed,
+        problem: Numbered,
         target: Piles,
         *,
         topple: bool,

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from smash.problem.views.numbered import ON_TABLE, Indexed, Step
+from smash.problem.views.numbered import ON_TABLE, Numbered, Step
 from smash.problem.views.targets import Piles, Tower, goal_piles, towers_of
 
 
-def line_steps(problem: Indexed) -> list[Step] | None:
+def line_steps(problem: Numbered) -> list[Step] | None:
     """Return steps that reach the goal without topple on one or two locations, or None where there are none.
 
     Raises:
@@ -40,7 +40,7 @@ _ENOUGH = 8
 """Plans compared before the shortest is taken."""
 
 
-def _ends(problem: Indexed, line: Sequence[int], cut: int) -> Piles | None:
+def _ends(problem: Numbered, line: Sequence[int], cut: int) -> Piles | None:
     """Return both final piles if the start line is cut after `cut` blocks, or None where no goal state is cut so."""
     piles = (list(line[:cut]), list(line[cut:])[::-1])
     wanted = goal_piles(problem)
@@ -62,7 +62,7 @@ def _with_prefix(pile: list[int], want: Sequence[int], table: set[int]) -> list[
     return [*want, *staying]
 
 
-def _tower_ends(problem: Indexed, piles: tuple[list[int], list[int]]) -> Piles | None:
+def _tower_ends(problem: Numbered, piles: tuple[list[int], list[int]]) -> Piles | None:
     """Return both final piles of an `on` goal: towers completed from the table, or None."""
     table = set(problem.table)
     towers = towers_of(problem)

@@ -9,9 +9,10 @@ from math import ceil, isfinite
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
-from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
-from smash.problem.actions.registry import is_plain
+from smash.planners.protocol import IncumbentLog, OnIncumbent, PlanResult, ProblemPlanner, Settings, SolveOptions
 from smash.problem.model import Action, Instance
+from smash.problem.plan import Plan
+from smash.problem.problem import Problem
 
 if TYPE_CHECKING:
     from smash.planners.layered.events import LayeredProblem
@@ -30,7 +31,7 @@ BUILD_SHARE = 0.6
 BOUND_ORIGIN = "layered relaxation"
 
 
-class LayeredPlanner(BasePlanner):
+class LayeredPlanner(ProblemPlanner):
     """The SMASH gadget with its free chain edges contracted, buffers first unbounded, then as many as there are.
 
     With unbounded buffers and a horizon that holds every plan, the model's optimum bounds the cost of all plans; a
@@ -50,28 +51,24 @@ class LayeredPlanner(BasePlanner):
         from smash.planners.layered import events, packing  # noqa: F401
         from smash.planners.milp.solvers import highs  # noqa: F401
 
-    def solve(
-        self,
-        instance: Instance,
-        options: SolveOptions,
-        budget: float,
-        on_incumbent: OnIncumbent | None = None,
-    ) -> PlanResult:
+    def plan(
+        self, problem: Problem, settings: Settings, budget: float, on_incumbent: OnIncumbent | None = None
+    ) -> Plan:
         """Plan for at most `budget` seconds of wall time."""
-        plain = is_plain(instance, options)
-        log = IncumbentLog(instance, options, on_incumbent, gentle=plain)
+        instance, options = problem.instance, SolveOptions.of(problem.options, settings)
+        log = IncumbentLog(instance, options, on_incumbent, gentle=problem.plain)
         impossible = log.without_plan()
         if impossible is not None:
-            return impossible
-        if not plain:
+            return impossible.as_plan(instance, "", options)
+        if not problem.plain:
             from smash.planners.layered.family.solve import FamilySolve
 
-            return FamilySolve(instance, options, budget, log, self.solve).run()
-        return _Solve(instance, options, budget, log).run()
+            return FamilySolve(instance, options, budget, log, self.solve).run().as_plan(instance, "", options)
+        return _Solve(instance, options, budget, log).run().as_plan(instance, "", options)
 
     def build_model(self, instance: Instance, options: SolveOptions) -> Milp:
         """Return the MILP of the relaxation at the sound horizon (of the family: a short one), or `horizon`."""
-        if not is_plain(instance, options):
+        if not Problem(instance, options).plain:
             from smash.planners.layered.family.solve import first_model
 
             return first_model(instance, options)

@@ -9,7 +9,8 @@ from time import perf_counter
 from smash.planners.precedence.graph import PrecedenceGraph, build_graph
 from smash.planners.precedence.hitting_set import HittingSet, HittingSetSolver
 from smash.planners.precedence.schedule import Scheduler, chosen_of
-from smash.problem.model import Action, Instance, PlanOptions
+from smash.problem.model import Action
+from smash.problem.problem import Problem
 
 ORIGIN = "precedence"
 """The `bound_origin` of the bounds proven here."""
@@ -44,8 +45,7 @@ class PrecedenceBound:
 
 
 def precedence_bound(
-    instance: Instance,
-    options: PlanOptions,
+    problem: Problem,
     deadline: float,
     on_plan: Callable[[Sequence[Action]], object] | None = None,
     threads: int = 1,
@@ -54,20 +54,19 @@ def precedence_bound(
 ) -> PrecedenceBound:
     """Bound the cost of every plan from below, and look for a plan that meets the bound.
 
-    The instance must be feasible (`smash.problem.feasibility`). Returns within a few milliseconds of
+    The problem must be feasible (`Problem.infeasible`). Returns within a few milliseconds of
     `deadline`, with a valid bound in any case.
 
     Args:
-        instance: the problem, of any goal kind.
-        options: topple or not, and its cap.
+        problem: a plain one, of any goal kind.
         deadline: when to stop, in seconds of `time.perf_counter`.
         on_plan: called with every better plan at once.
         threads: the solver's threads.
         on_no_plan: called once, as soon as the first choices do not fit the locations there are.
         on_bound: called at once with the first bound and every better one.
     """
-    graph = build_graph(instance, options)
-    plans = _Plans(instance, options, graph, deadline, on_plan, on_no_plan)
+    graph = build_graph(problem)
+    plans = _Plans(problem, graph, deadline, on_plan, on_no_plan)
     tell = on_bound or (lambda bound: None)
     tell(graph.base_cost)
     solver = HittingSetSolver(graph, threads, lambda bound: tell(graph.base_cost + bound))
@@ -83,15 +82,13 @@ class _Plans:
 
     def __init__(
         self,
-        instance: Instance,
-        options: PlanOptions,
+        problem: Problem,
         graph: PrecedenceGraph,
         deadline: float,
         on_plan: Callable[[Sequence[Action]], object] | None,
         on_no_plan: Callable[[], object] | None,
     ) -> None:
-        self.instance = instance
-        self.options = options
+        self.problem = problem
         self.graph = graph
         self.deadline = deadline
         self.on_plan = on_plan
@@ -113,7 +110,7 @@ class _Plans:
             return
         self._scheduled = set(chosen)
         graph = self.graph
-        scheduler = Scheduler(self.instance, graph.demands, chosen_of(graph.choices, chosen), self.options.max_topple)
+        scheduler = Scheduler(self.problem, chosen_of(graph.choices, chosen))
         limit = started + max(SHORT, share * (self.deadline - started))
         actions = scheduler.plan(min(self.deadline, limit))
         self._took = perf_counter() - started

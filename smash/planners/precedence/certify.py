@@ -16,24 +16,21 @@ from smash.planners.precedence.cycles import CycleFinder
 from smash.planners.precedence.dive import dive
 from smash.planners.precedence.graph import Floats, PrecedenceGraph, build_graph
 from smash.problem.certificate import ONE, Cases, Certificate, Leaf
-from smash.problem.model import Instance, PlanOptions
+from smash.problem.problem import Problem
 
 Fixed = dict[int, int]
 """Choices that a case fixes: 1 taken, 0 not."""
 
 
-def certify(
-    instance: Instance, options: PlanOptions, deadline: float, known: Iterable[tuple[int, ...]] = ()
-) -> Certificate:
+def certify(problem: Problem, deadline: float, known: Iterable[tuple[int, ...]] = ()) -> Certificate:
     """Prove as good a lower bound as the time allows, and return the proof.
 
     Args:
-        instance: a feasible problem.
-        options: topple or not, and its cap.
+        problem: a feasible one.
         deadline: when to stop, in seconds of `time.perf_counter`; the certificate then proves what it can.
         known: cycles found before (`HittingSet.cycles`), to start from.
     """
-    prover = _Prover(build_graph(instance, options), deadline)
+    prover = _Prover(build_graph(problem), deadline)
     for cycle in known:
         prover.add(cycle)
     proof, bound = prover.prove()
@@ -43,9 +40,9 @@ def certify(
     note = "the time ran out before more was proven" if perf_counter() > deadline else ""
     return Certificate(
         format="smash-certificate/1",
-        instance=instance.name,
-        topple=options.topple,
-        max_topple=options.max_topple,
+        instance=problem.instance.name,
+        topple=problem.options.topple,
+        max_topple=problem.options.max_topple,
         bound=graph.base_cost + bound,
         cycles=[[graph.blocks[block] for block in prover.cycles[row]] for row in used],
         proof=_renumbered(proof, rank),

@@ -17,8 +17,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from smash.problem.model import Instance, PlanOptions
-from smash.problem.views.demands import Demands, demands_of
+from smash.problem.problem import Problem
+from smash.problem.views.demands import Demands
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -96,9 +96,9 @@ class PrecedenceGraph:
         return frozenset(c for b in blocks for c in range(int(self.choice_low[b]), int(self.choice_high[b])))
 
 
-def build_graph(instance: Instance, options: PlanOptions) -> PrecedenceGraph:
-    """Build the precedence graph of `instance` and the choices that `options` allow."""
-    demands = demands_of(instance)
+def build_graph(problem: Problem) -> PrecedenceGraph:
+    """Build the precedence graph of a problem and the choices that its options allow."""
+    instance, options, demands = problem.instance, problem.options, problem.demands
     blocks: list[str] = []
     piles: list[tuple[str, int, int]] = []
     for location, pile in demands.leaving.items():

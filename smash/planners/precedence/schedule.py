@@ -15,8 +15,9 @@ from time import perf_counter
 
 from smash.planners.precedence.graph import Choice
 from smash.problem.actions.topple import Topple
-from smash.problem.model import TABLE, Action, Instance, OnGoal, Pick, Place
-from smash.problem.views.demands import Demands, Pile
+from smash.problem.model import TABLE, Action, OnGoal, Pick, Place, State
+from smash.problem.problem import Problem
+from smash.problem.views.demands import Pile
 
 Event = tuple[str, str]
 Segments = dict[str, list[tuple[int, int]]]
@@ -28,7 +29,7 @@ MEMO_BLOCKS = 60
 class Progress:
     """How far a schedule has come: leaving blocks still in their start pile (`remaining`), those put aside so far."""
 
-    piles: dict[str, list[str]]
+    state: State
     where: dict[str, str]
     remaining: dict[str, int]
     placed: list[int]
@@ -38,10 +39,15 @@ class Progress:
     gone_aside: int = 0
     actions: list[Action] = field(default_factory=list)
 
+    @property
+    def piles(self) -> dict[str, list[str]]:
+        """The piles per location, bottom first."""
+        return self.state.piles
+
     def copy(self) -> Progress:
         """Return an independent copy."""
         return Progress(
-            {location: list(pile) for location, pile in self.piles.items()},
+            self.state.copy(),
             dict(self.where),
             dict(self.remaining),
             list(self.placed),
@@ -59,12 +65,14 @@ class Progress:
 
 
 class Scheduler:
-    """Schedules one set of choices for an instance."""
+    """Schedules one set of choices for a problem."""
 
-    def __init__(self, instance: Instance, demands: Demands, choices: Sequence[Choice], cap: int | None) -> None:
+    def __init__(self, problem: Problem, choices: Sequence[Choice]) -> None:
+        instance, demands = problem.instance, problem.demands
+        self.law = problem.law
         self.instance = instance
         self.demands = demands
-        self.cap = cap
+        self.cap = problem.options.max_topple
         self.chains: list[Pile] = [*demands.build.values(), *(chain.blocks for chain in demands.floating)]
         located = len(demands.build)
         self.bottoms = {located + k for k, chain in enumerate(demands.floating) if chain.bottom}
@@ -128,7 +136,7 @@ class Scheduler:
         where = {block: location for location, pile in start.items() for block in pile}
         where.update((block, TABLE) for block in self.instance.table)
         return Progress(
-            piles={location: list(pile) for location, pile in start.items()},
+            state=State.start_of(self.instance),
             where=where,
             remaining={location: len(pile) for location, pile in demands.leaving.items()},
             placed=[0] * len(self.chains),
@@ -193,10 +201,9 @@ class Scheduler:
         for block in pile[low - 1 :]:
             state.where[block] = TABLE
             state.waiting.discard(block)
-        del pile[low - 1 :]
         state.remaining[location] -= min(top - low + 1, state.remaining[location])
         segments.pop(0)
-        state.actions.append(Topple(location, low))
+        self._do(state, Topple(location, low))
         return True
 
     def _move_loose(self, state: Progress) -> bool:
@@ -316,13 +323,15 @@ class Scheduler:
 
     def _move(self, state: Progress, block: str, target: str) -> None:
         source = state.where[block]
-        state.actions += [Pick(block, source), Place(block, target)]
-        if source != TABLE:
-            state.piles[source].pop()
-            if block not in state.waiting:
-                state.remaining[source] -= 1
-        state.piles[target].append(block)
+        self._do(state, Pick(block, source))
+        self._do(state, Place(block, target))
+        if source != TABLE and block not in state.waiting:
+            state.remaining[source] -= 1
         state.where[block] = target
+
+    def _do(self, state: Progress, action: Action) -> None:
+        self.law.carry_out(state.state, action)
+        state.actions.append(action)
 
     def _accessible(self, state: Progress, block: str) -> bool:
         location = state.where[block]

@@ -1,27 +1,38 @@
-"""What a planner is, for those who write one: the protocol, the settings, the log of incumbents."""
+"""What a planner is: the protocol, the settings of a solve, the log of incumbents, the methods table.
 
-from smash.planners.protocol.planner import (
-    MOST_THREADS,
-    BasePlanner,
-    IncumbentLog,
-    OnIncumbent,
-    Planner,
-    PlanResult,
-    Relay,
-    SolveOptions,
-    Support,
-    why_unsupported,
-)
+A planner from outside needs `BasePlanner`, `IncumbentLog`, `PlanResult`, `SolveOptions` and `OnIncumbent`.
+"""
+
+from smash.planners.protocol.answer import OnIncumbent, PlanResult
+from smash.planners.protocol.clock import SPARE_SECONDS, deadline_of, left
+from smash.planners.protocol.log import IncumbentLog, Relay, SolveLog
+from smash.planners.protocol.methods import Method, MethodPlanner, anything, not_plain, plain, walk
+from smash.planners.protocol.planner import BasePlanner, Planner, ProblemPlanner, ask, why_unsupported
+from smash.planners.protocol.settings import MOST_THREADS, Settings, SolveOptions, plan_options, settings_of
 
 __all__ = [
     "MOST_THREADS",
+    "SPARE_SECONDS",
     "BasePlanner",
     "IncumbentLog",
+    "Method",
+    "MethodPlanner",
     "OnIncumbent",
     "PlanResult",
     "Planner",
+    "ProblemPlanner",
     "Relay",
+    "Settings",
+    "SolveLog",
     "SolveOptions",
-    "Support",
+    "anything",
+    "ask",
+    "deadline_of",
+    "left",
+    "not_plain",
+    "plain",
+    "plan_options",
+    "settings_of",
+    "walk",
     "why_unsupported",
 ]

@@ -10,17 +10,18 @@ from bisect import bisect_right
 from collections.abc import Sequence
 
 from smash.problem.actions.topple import Topple
-from smash.problem.model import TABLE, Action, Instance, Pick, Place, State
+from smash.problem.model import TABLE, Action, Pick, Place, State
+from smash.problem.rules import Law
 
 
-def gentle_topples(instance: Instance, actions: Sequence[Action]) -> tuple[Action, ...]:
+def gentle_topples(law: Law, actions: Sequence[Action]) -> tuple[Action, ...]:
     """Raise the cut of each topple of a legal plan as far as the rest of the plan allows.
 
     A block stays on its stack where it is picked from the table region before anything else happens at that stack,
     and after the blocks above it. A topple of which nothing would fall is left out.
     """
     plan: list[Action | None] = list(actions)
-    state = State.start_of(instance)
+    state = State.start_of(law.instance)
     picks: dict[str, list[int]] = {}
     for index, action in enumerate(actions):
         if isinstance(action, Pick) and action.source == TABLE:
@@ -35,7 +36,8 @@ def gentle_topples(instance: Instance, actions: Sequence[Action]) -> tuple[Actio
                 plan[_next(picks[block], index)] = Pick(block, action.location)
             current = Topple(action.location, action.height + kept) if kept < len(falling) else None
             plan[index] = current
-        _apply(state, current)
+        if current is not None:
+            law.carry_out(state, current)
     return tuple(action for action in plan if action is not None)
 
 
@@ -65,17 +67,3 @@ def _next_use(plan: Sequence[Action | None], index: int, location: str) -> int:
             case Pick(_, at) | Place(_, at) | Topple(at, _) if at == location:
                 return later
     return len(plan)
-
-
-def _apply(state: State, action: Action | None) -> None:
-    match action:
-        case Pick(block, source):
-            if source == TABLE:
-                state.table.remove(block)
-            else:
-                state.piles[source].pop()
-        case Place(block, target):
-            state.piles[target].append(block)
-        case Topple(location, height):
-            state.table.update(state.piles[location][height - 1 :])
-            del state.piles[location][height - 1 :]

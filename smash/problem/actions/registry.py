@@ -14,7 +14,7 @@ from smash.problem.model import Aggregating, Instance, PlanOptions
 GROUP = "smash.aggregating"
 
 FAMILY: dict[str, AggregatingKind[Any]] = {
-    kind.name: kind for kind in (*added(GROUP), ToppleKind(), CarryKind(), LiftKind())
+    kind.name: kind for kind in (*added(GROUP, AggregatingKind), ToppleKind(), CarryKind(), LiftKind())
 }
 """Kinds of aggregating actions by name; the built-in ones cannot be replaced."""
 
@@ -24,12 +24,6 @@ _BY_CLASS: dict[type[Aggregating], AggregatingKind[Any]] = {kind.action: kind fo
 def kind_of(action: Aggregating) -> AggregatingKind[Any]:
     """Return the kind of an action."""
     return _BY_CLASS[type(action)]
-
-
-def is_plain(instance: Instance, options: PlanOptions) -> bool:
-    """Return whether a problem is one of pick, place and topple alone, each at cost 1."""
-    further = any(kind.name != "topple" for kind in kinds_of(instance, options))
-    return not further and instance.costs.plain and not any(carrier.holds for carrier in instance.carriers)
 
 
 def kinds_of(instance: Instance, options: PlanOptions) -> list[AggregatingKind[Any]]:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import itertools
 import os
 from collections.abc import Iterator
 from pathlib import Path
 
 from smash.problem.errors import MalformedFile
 from smash.problem.files.instances import read_instance
-from smash.problem.making import fresh_names, make_instance
-from smash.problem.model import TABLE, Instance
+from smash.problem.model import Instance
 from smash.problem.sets.generators import generate
 from smash.problem.sets.open_instances import FAMILIES, open_set
 
@@ -61,31 +59,6 @@ def read_suite(name: str | os.PathLike[str]) -> list[Instance]:
             raise MalformedFile(str(file), f"`name`: {instance.name!r} stands twice in the set")
         instances[instance.name] = instance
     return list(instances.values())
-
-
-def with_buffers(instance: Instance, count: int) -> Instance:
-    """Return the instance with `count` buffers: those that hold blocks stay, empty ones go or come (`u1`, `u2`, …).
-
-    Raises:
-        MalformedFile: where more buffers hold blocks at the start.
-    """
-    held = [buffer for buffer in instance.buffers if instance.start[buffer]]
-    if len(held) > count:
-        raise MalformedFile(instance.name, f"{len(held)} buffers hold blocks at the start; {count} are too few")
-    empty = [buffer for buffer in instance.buffers if not instance.start[buffer]][: count - len(held)]
-    kept = [buffer for buffer in instance.buffers if buffer in held or buffer in empty]
-    taken = {*instance.locations, TABLE}
-    fresh = fresh_names("u", taken)
-    return make_instance(
-        name=instance.name,
-        blocks=instance.blocks,
-        stacks=instance.stacks,
-        buffers=[*kept, *itertools.islice(fresh, count - len(kept))],
-        start={location: instance.start[location] for location in (*instance.stacks, *kept)},
-        goal=instance.goal,
-        table=instance.table,
-        where=instance.name,
-    )
 
 
 def generated_names() -> list[str]:

@@ -11,8 +11,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from smash.problem.actions.registry import kinds_of
-from smash.problem.model import TABLE, Instance, OnGoal, PlanOptions, StacksGoal, State
+from smash.problem.model import TABLE, OnGoal, StacksGoal, State
+from smash.problem.rules import Law
 
 
 class Distances:
@@ -24,9 +24,9 @@ class Distances:
         back: from a place to another and back.
     """
 
-    def __init__(self, instance: Instance, options: PlanOptions) -> None:
+    def __init__(self, law: Law) -> None:
+        instance, options, kinds = law.instance, law.options, law.kinds
         stations = [station for carrier in instance.carriers for station in carrier.stations]
-        kinds = kinds_of(instance, options)
         targets = [*instance.locations, *(stations if any(kind.name == "carry" for kind in kinds) else ())]
         self.places = list(dict.fromkeys([*instance.locations, TABLE, *stations]))
         costs = instance.costs
@@ -65,9 +65,9 @@ def _shortest(places: Sequence[str], edges: Mapping[tuple[str, str], float]) -> 
 class Estimate:
     """The lower bound of a state, and of one block wherever it stands."""
 
-    def __init__(self, instance: Instance, options: PlanOptions) -> None:
-        self.distances = Distances(instance, options)
-        goal = instance.goal
+    def __init__(self, law: Law) -> None:
+        self.distances = Distances(law)
+        goal = law.instance.goal
         self.home: dict[str, tuple[str, int]] = {}
         self.under: dict[str, str] = {}
         self.bottom: frozenset[str] = frozenset()

@@ -18,7 +18,7 @@ Step = tuple[int, int, int]
 
 
 @dataclass(frozen=True, slots=True)
-class Indexed:
+class Numbered:
     """Blocks and locations by number; locations `0 .. stacks-1` are stacks, the rest are buffers.
 
     `start[q]` is the pile of location q, bottom first; `table` are the blocks in the table region.
@@ -31,7 +31,7 @@ class Indexed:
     block_number: dict[str, int]
 
     @classmethod
-    def of(cls, instance: Instance) -> Indexed:
+    def of(cls, instance: Instance) -> Numbered:
         """Number the blocks and locations of `instance` in their order."""
         blocks = {block: number for number, block in enumerate(instance.blocks)}
         return cls(

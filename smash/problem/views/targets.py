@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from smash.problem.model import OnGoal, PositionsGoal, StacksGoal, no_goal
-from smash.problem.views.numbered import Indexed
+from smash.problem.views.numbered import Numbered
 
 Piles = tuple[tuple[int, ...], ...]
 """One pile of block numbers per location, bottom first."""
@@ -23,7 +23,7 @@ class Tower:
     grounded: bool
 
 
-def towers_of(problem: Indexed) -> list[Tower]:
+def towers_of(problem: Numbered) -> list[Tower]:
     """Return the towers of the instance's `on` goal."""
     goal = problem.instance.goal
     assert isinstance(goal, OnGoal)
@@ -31,7 +31,7 @@ def towers_of(problem: Indexed) -> list[Tower]:
     return [Tower(tuple(number[block] for block in tower), tower[0] in bottom) for tower in goal.towers()]
 
 
-def goal_piles(problem: Indexed) -> Piles | None:
+def goal_piles(problem: Numbered) -> Piles | None:
     """Return the piles that a `stacks` or `positions` goal wants per location, or None for an `on` goal."""
     match problem.instance.goal:
         case StacksGoal(stacks):
@@ -46,7 +46,7 @@ def goal_piles(problem: Indexed) -> Piles | None:
     return tuple(tuple(number[block] for block in wanted.get(q, ())) for q in problem.instance.locations)
 
 
-def target_piles(problem: Indexed) -> Piles | None:
+def target_piles(problem: Numbered) -> Piles | None:
     """Return one pile per location whose being there fulfils the goal; None where there are too many bottoms.
 
     Blocks in none of the piles may lie anywhere that is not under them.
@@ -58,7 +58,7 @@ def target_piles(problem: Indexed) -> Piles | None:
 class _Assignment:
     """Gives each tower of an `on` goal a place; the floor under it is part of the location's target."""
 
-    def __init__(self, problem: Indexed) -> None:
+    def __init__(self, problem: Numbered) -> None:
         self.problem = problem
         self.towers = towers_of(problem)
         self.tower_of = {block: tower for tower in self.towers for block in tower.blocks}

@@ -14,6 +14,7 @@ from smash.planners.layered.family.places import Places
 from smash.planners.layered.family.unordered import Unordered
 from smash.planners.protocol import IncumbentLog, OnIncumbent, PlanResult, SolveOptions
 from smash.problem.model import Action, Instance
+from smash.problem.problem import Problem
 from smash.problem.views.demands import Demands, demands_of
 
 if TYPE_CHECKING:
@@ -126,12 +127,12 @@ class FamilySolve:
 
     def _warm_start(self, name: str) -> None:
         """Take the first plan from another planner, for a tenth of the time left."""
-        from smash.planners.protocol import why_unsupported
+        from smash.planners.protocol import plan_options, settings_of, why_unsupported
         from smash.planners.registry import get_planner
 
         planner = get_planner(name)
         options = replace(self.options, warm_start=None, horizon=None)
-        if why_unsupported(planner, self.instance, options) is not None:
+        if why_unsupported(planner, Problem(self.instance, plan_options(options)), settings_of(options)) is not None:
             return
         found = planner.solve(self.instance, options, max(0.05, (self.deadline - perf_counter()) / 10))
         if found.actions is not None:

@@ -29,8 +29,9 @@ def solve(
     Raises:
         Unsupported: where gurobipy is not installed, or its licence does not take a model of this size.
     """
-    require("Gurobi", "gurobipy")
+    require("Gurobi", "gurobipy", "scipy")
     import gurobipy
+    import scipy.sparse  # noqa: F401 - gurobipy takes its matrices
 
     began = perf_counter()
     try:

@@ -1,0 +1,59 @@
+"""Runs as tidy tables: one row a run, one an incumbent, one an action of the best plan."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pandas as pd
+
+from smash.records.runs import RunRecord
+from smash_analysis.metrics import metric_columns
+from smash_analysis.tables.actions import ACTION_COLUMNS, named
+
+
+def runs_table(records: Sequence[RunRecord]) -> pd.DataFrame:
+    """Return one row a run; nested fields (versions, machine, details, actions) stay in the records.
+
+    Columns of the record, fields included that this version does not know, and: `first_seconds`, `best_seconds` (time
+    of the first and of the best incumbent, NaN without a plan), `solved` (a plan that the law accepts), `proven` (its
+    status is optimal), and `metric.NAME` for every registered metric.
+    """
+    table = pd.DataFrame([_plain(record) for record in records])
+    traces = [record.trace for record in records]
+    table["first_seconds"] = [trace[0][0] if trace else float("nan") for trace in traces]
+    table["best_seconds"] = [trace[-1][0] if trace else float("nan") for trace in traces]
+    table["solved"] = [bool(trace) for trace in traces]
+    table["proven"] = table["solved"] & (table["status"] == "optimal")
+    table["cost"] = [trace[-1][1] if trace else float("nan") for trace in traces]
+    table["commit"] = [record.commit.hash for record in records]
+    for name, values in metric_columns(records).items():
+        table[name] = values
+    return table
+
+
+def _plain(record: RunRecord) -> dict[str, object]:
+    """Return the fields of a record that fit into a cell."""
+    fields = {name: getattr(record, name) for name in record.__struct_fields__} | record.further
+    return {name: value for name, value in fields.items() if value is None or isinstance(value, str | int | float)}
+
+
+def incumbents_table(records: Sequence[RunRecord]) -> pd.DataFrame:
+    """Return one row an incumbent: run key, number (from 1), seconds, cost, origin."""
+    rows = [
+        (record.key, number, float(seconds), int(cost), origin)
+        for record in records
+        for number, (seconds, cost, origin) in enumerate(record.incumbents, start=1)
+    ]
+    types = {"key": "string", "number": "int64", "seconds": "float64", "cost": "int64", "origin": "string"}
+    return pd.DataFrame(rows, columns=list(types)).astype(types)
+
+
+def steps_table(records: Sequence[RunRecord]) -> pd.DataFrame:
+    """Return one row an action of the best plan: run key, step (from 1), the columns of `tables.actions`."""
+    rows = [
+        {"key": record.key, "step": step, **named(action)}
+        for record in records
+        for step, action in enumerate(record.actions or [], start=1)
+    ]
+    types = {"key": "string", "step": "int64", **ACTION_COLUMNS}
+    return pd.DataFrame(rows, columns=list(types)).astype(types)

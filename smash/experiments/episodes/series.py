@@ -1,0 +1,208 @@
+"""Episodes of a sweep's plans: each recorded plan is carried out under several seeds, recorded one line an episode.
+
+`RESULTS/runs.jsonl` holds the plans, `RESULTS/episodes.jsonl` gets the episodes. They run in processes of their own, so
+that a crash of the physics costs one episode alone; a stopped run is continued where it ended.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from datetime import UTC, datetime
+from pathlib import Path
+from threading import Event
+from time import perf_counter
+
+import msgspec
+
+from smash.experiments.environment import commit, load, machine, versions
+from smash.experiments.episodes.worker import Crew, EpisodeLost
+from smash.problem.errors import SmashError
+from smash.problem.files.instances import instance_from_document
+from smash.problem.model import Instance, PositionsGoal
+from smash.records.episodes import EPISODE_RUN_FORMAT, Episode, EpisodeRecord
+from smash.records.files import RUNS
+from smash.records.reading import read
+from smash.records.runs import RunRecord
+from smash.records.writing import Writer
+
+REPLAYS = "replays"
+POLICIES = ("replan", "open")
+"""`replan`: the executor repairs, retries and replans; `open`: the paper's open pipeline."""
+REPLAN_BUDGET = 10.0
+"""Seconds of each replanning."""
+
+
+class EpisodeRun(msgspec.Struct, frozen=True):
+    """One episode to be run.
+
+    Attributes:
+        record: The run that holds its plan.
+        seed: Of the episode.
+        policy: Of `POLICIES`.
+        scene: The scene file, or None for the built-in scene.
+        told: What `told_apart` says of the scene, or None for the built-in scene.
+        replay: The page to write, or None.
+    """
+
+    record: RunRecord
+    seed: int
+    policy: str
+    scene: str | None
+    told: str | None = None
+    replay: str | None = None
+
+    @property
+    def key(self) -> str:
+        """Names the episode for good."""
+        return f"{self.record.key}/{self.policy}/{self.seed}" + (f"/{self.told}" if self.told else "")
+
+
+def told_apart(scene: str | os.PathLike[str]) -> str:
+    """Return the name of a scene file with what tells its content from any other."""
+    from smash.execution.scene.scene_file import read_scene
+
+    return f"{Path(scene).stem}-{read_scene(scene).fingerprint}"
+
+
+def episode_runs(
+    results: Path,
+    seeds: Sequence[int],
+    policies: Sequence[str],
+    scene: str | None = None,
+    labels: Sequence[str] = (),
+    replays: bool = False,
+    told: str | None = None,
+) -> list[EpisodeRun]:
+    """Return the episodes of all plans that a sweep has recorded, seed by seed, so that a part is a fair sample.
+
+    Args:
+        results: The sweep's directory.
+        seeds: Of the episodes.
+        policies: Of `POLICIES`.
+        scene: A scene file, or None for the built-in scene.
+        labels: Only plans of planners so labelled; all where there are none.
+        replays: Write a replay page of each plan's first episode beside the records.
+        told: What tells the scene from others; found out where it is not given.
+
+    Raises:
+        MalformedFile: where the records are damaged.
+        SmashError: where nobody is labelled so.
+    """
+    reading = read(results, RUNS)
+    reading.refuse_damage()
+    plans = [run for run in reading.records if run.actions is not None]
+    plans = [run for run in plans if run.outcome != "refused" and run.kind != "cutoff"]
+    known = {run.label for run in plans}
+    for label in labels:
+        if label not in known:
+            raise SmashError(f"{reading.path}: no plan by {label!r}; there are plans by {', '.join(sorted(known))}")
+    plans = [record for record in plans if not labels or record.label in labels]
+    if told is None and scene is not None:
+        told = told_apart(scene)
+    runs = [EpisodeRun(record, seed, policy, scene, told) for seed in seeds for record in plans for policy in policies]
+    if not replays:
+        return runs
+    replace = msgspec.structs.replace
+    return [replace(run, replay=_replay(results, run)) if run.seed == seeds[0] else run for run in runs]
+
+
+def _replay(results: Path, run: EpisodeRun) -> str:
+    """The page of an episode: instance, planner, variant and policy in words that any file system takes."""
+    words = (run.record.instance, run.record.label, run.record.variant, run.policy)
+    name = re.sub(r"[^A-Za-z0-9.-]+", "-", "_".join(words)).strip("-")
+    return str((results / REPLAYS / f"{name}.html").resolve())
+
+
+def run_all(
+    runs: Iterable[EpisodeRun],
+    records: Writer[EpisodeRecord],
+    jobs: int,
+    stop: Event,
+    ended: Callable[[EpisodeRun, EpisodeRecord], None],
+) -> None:
+    """Run what is not recorded yet, `jobs` at a time; where `stop` is set, leave at once what is under way."""
+    left = [run for run in runs if run.key not in records.finished]
+    with Crew(jobs) as crew, ThreadPoolExecutor(jobs) as pool:
+        waiting: dict[Future[EpisodeRecord], EpisodeRun] = {}
+        source: Iterator[EpisodeRun] = iter(left)
+        while True:
+            while len(waiting) < jobs and not stop.is_set() and (run := next(source, None)) is not None:
+                waiting[pool.submit(run_apart, run, crew)] = run
+            if stop.is_set():
+                crew.close()
+            if not waiting:
+                return
+            for future in wait(waiting, timeout=0.5, return_when=FIRST_COMPLETED).done:
+                run = waiting.pop(future)
+                record = future.result()
+                if not stop.is_set():
+                    records.append(record)
+                    ended(run, record)
+
+
+def run_apart(run: EpisodeRun, crew: Crew) -> EpisodeRecord:
+    """Run one episode in a process of the crew; the record's `episode` is None where that process ended badly."""
+    started, begun, before = datetime.now(UTC), perf_counter(), load()
+    episode, problem = None, ""
+    try:
+        episode = crew.ask(run)
+    except EpisodeLost as loss:
+        problem = str(loss)
+    return _record(run, episode, problem, started, perf_counter() - begun, before)
+
+
+def _record(
+    run: EpisodeRun, episode: Episode | None, problem: str, started: datetime, seconds: float, before: float
+) -> EpisodeRecord:
+    plan = run.record
+    instance = instance_from_document(plan.instance_document)
+    assert plan.cost is not None  # episodes are of plans
+    return EpisodeRecord(
+        format=EPISODE_RUN_FORMAT,
+        key=run.key,
+        run=plan.key,
+        instance=plan.instance,
+        suite=plan.suite,
+        label=plan.label,
+        variant=plan.variant,
+        policy=run.policy,
+        seed=run.seed,
+        scene=None if run.scene is None else Path(run.scene).stem,
+        blocks=len(instance.blocks),
+        depth=target_depth(instance),
+        cost=plan.cost,
+        status=plan.status,
+        budget=plan.budget,
+        first_plan_seconds=plan.incumbents[0][0] if plan.incumbents else None,
+        best_plan_seconds=plan.incumbents[-1][0] if plan.incumbents else None,
+        episode=episode,
+        problem=problem,
+        wall_seconds=seconds,
+        started=started.isoformat(timespec="milliseconds"),
+        load_average=(before, load()),
+        commit=commit(),
+        machine=machine(),
+        versions=versions("greedy") | execution_versions(),
+    )
+
+
+def execution_versions() -> dict[str, str]:
+    """Return the versions of what moves and simulates the arm."""
+    from importlib.metadata import version
+
+    return {name: version(name) for name in ("pybullet", "ompl", "pin", "coal", "toppra")}
+
+
+def target_depth(instance: Instance) -> int | None:
+    """Depth of a single-goal instance's target in its start pile, the top being 1; None for other goals."""
+    goal = instance.goal
+    if not isinstance(goal, PositionsGoal) or len(goal.positions) != 1:
+        return None
+    target = next(iter(goal.positions))
+    for pile in instance.start.values():
+        if target in pile:
+            return len(pile) - pile.index(target)
+    return None

@@ -1,0 +1,60 @@
+"""How a planner solves, apart from what a plan may use: the settings of solvers and searches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+
+from smash.problem.model import PlanOptions
+
+MOST_THREADS = 256
+"""Threads that a solver may be given; with some thousands it does nothing but start them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Settings of one solve; each planner uses those that mean something to it.
+
+    Attributes:
+        warm_start: the planner whose plan starts a model (None: cold).
+        horizon: number of time steps or layers of the time-indexed models, in place of their own choice.
+        threads: most threads of a solver.
+        seed: for whatever draws at random.
+    """
+
+    warm_start: str | None = None
+    horizon: int | None = None
+    threads: int = 1
+    seed: int = 0
+
+    @property
+    def cold(self) -> Settings:
+        """The same for a planner that starts another one's model: no warm start, no horizon."""
+        return replace(self, warm_start=None, horizon=None)
+
+
+@dataclass(frozen=True, slots=True)
+class SolveOptions(PlanOptions):
+    """Plan options and settings in one, as `Planner.solve` takes them."""
+
+    warm_start: str | None = None
+    horizon: int | None = None
+    threads: int = 1
+    seed: int = 0
+
+    @classmethod
+    def of(cls, options: PlanOptions, settings: Settings) -> SolveOptions:
+        """Return both in one."""
+        chosen = {field.name: getattr(settings, field.name) for field in fields(settings)}
+        return cls(options.topple, options.max_topple, without=options.without, **chosen)
+
+
+def plan_options(options: PlanOptions) -> PlanOptions:
+    """Return the plan options alone, whatever settings come with them."""
+    return PlanOptions(options.topple, options.max_topple, without=options.without)
+
+
+def settings_of(options: PlanOptions) -> Settings:
+    """Return the settings that come with plan options; the defaults where none do."""
+    if not isinstance(options, SolveOptions):
+        return Settings()
+    return Settings(options.warm_start, options.horizon, options.threads, options.seed)

@@ -1,0 +1,97 @@
+"""A run: `smash-run/1`, one line of `runs.jsonl`: an encoded plan and how it ended."""
+
+from __future__ import annotations
+
+from typing import Any, Final, Literal
+
+import msgspec
+
+from smash.problem.files.plans import PLAN_FORMAT_2, plan_document, plan_from_document
+from smash.problem.plan import Plan, Status
+from smash.records.outcomes import OutcomeName
+from smash.records.record import Commit, Machine, Record
+
+RUN_FORMAT: Final = "smash-run/1"
+RunKind = Literal["anytime", "budget", "cutoff"]
+"""`anytime`: stands for every smaller budget too; `budget`: for its own alone; `cutoff`: checks that reading."""
+PLAN_FIELDS = (
+    *("instance", "planner", "topple", "max_topple", "without", "status", "cost"),
+    *("lower_bound", "bound_origin", "incumbents", "actions"),
+)
+
+
+class VerdictField(msgspec.Struct, frozen=True):
+    """The law's verdict; `step` is 1-based, None where the plan as a whole is refused."""
+
+    accepted: bool
+    reason: str
+    step: int | None
+
+
+class RunRecord(Record, kw_only=True, frozen=True):
+    """One run; `docs/records.md` says what each field means and its unit."""
+
+    format: Literal["smash-run/1"]
+    key: str
+    experiment: str
+    label: str
+    suite: str
+    variant: str
+    kind: RunKind
+    instance: str
+    planner: str
+    topple: bool
+    max_topple: int | None
+    status: Status
+    cost: int | None
+    lower_bound: int | None
+    bound_origin: str | None
+    incumbents: list[tuple[float, int, str]]
+    actions: list[list[str | int]] | None
+    outcome: OutcomeName
+    reason: str
+    verdict: VerdictField | None
+    budget: float
+    budgets: list[float]
+    memory_limit_mib: int
+    warm_start: str | None
+    horizon: int | None
+    threads: int
+    seed: int
+    blocks: int
+    stacks: int
+    buffers: int
+    instance_hash: str
+    instance_document: dict[str, Any]
+    wall_seconds: float | None
+    cpu_seconds: float | None
+    memory_mib: float | None
+    details: dict[str, Any]
+    log: str
+    started: str
+    load_average: tuple[float, float]
+    versions: dict[str, str]
+    commit: Commit
+    machine: Machine
+    without: list[str] = msgspec.field(default_factory=list)
+
+    @property
+    def trace(self) -> list[tuple[float, int]]:
+        """(seconds, cost) of the incumbents that count: none where the law refused what the planner answered."""
+        return [] if self.outcome == "refused" else [(seconds, cost) for seconds, cost, _ in self.incumbents]
+
+    @property
+    def plan(self) -> Plan:
+        """The plan that it holds.
+
+        Raises:
+            MalformedFile: where it is malformed.
+        """
+        fields = {name: getattr(self, name) for name in PLAN_FIELDS}
+        return plan_from_document({"format": PLAN_FORMAT_2, **fields}, "record")
+
+
+def plan_fields(plan: Plan) -> dict[str, Any]:
+    """Return the fields of a record that hold a plan."""
+    document = plan_document(plan)
+    return {name: document.get(name, []) for name in PLAN_FIELDS}

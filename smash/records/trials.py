@@ -1,0 +1,60 @@
+"""A trial of a topple: `smash-topple-trial/1`, one line of `trials.jsonl`."""
+
+from __future__ import annotations
+
+from typing import Final, Literal
+
+import msgspec
+
+from smash.records.record import Record
+
+TRIAL_FORMAT: Final = "smash-topple-trial/1"
+Key = tuple[str, int, int, int, int]
+"""What tells a trial from the others: the scene's fingerprint, stack, height of the cut, number falling, seed."""
+
+
+class Landing(msgspec.Struct, frozen=True):
+    """Where one block came to rest, in the push's frame, from the pile's middle [m]; whether it can be grasped."""
+
+    level: int
+    along: float
+    aside: float
+    graspable: bool
+
+
+class Trial(Record, kw_only=True, frozen=True):
+    """One topple.
+
+    Attributes:
+        layout: The scene's fingerprint.
+        stack: Index of the scene's stack.
+        height: Lowest level that falls, 1 is the bottom.
+        falling: Number of blocks that fall.
+        seed: Of the start poses.
+        moved: Largest displacement of a block below the cut [m].
+        stands: Whether the lower part still stands at its place, by the law's reading of the scene.
+        landings: One per toppled block, from the cut upward; empty where no push was found.
+        problem: Why there was no push, or nothing.
+    """
+
+    format: Literal["smash-topple-trial/1"] = TRIAL_FORMAT
+    scene: str
+    layout: str = ""
+    stack: int
+    height: int
+    falling: int
+    seed: int
+    moved: float = 0.0
+    stands: bool = False
+    landings: tuple[Landing, ...] = ()
+    problem: str = ""
+
+    @property
+    def key(self) -> Key:
+        """What tells a trial from the others."""
+        return self.layout, self.stack, self.height, self.falling, self.seed
+
+    @property
+    def success(self) -> bool:
+        """Whether the plan could go on as the law says."""
+        return self.stands and bool(self.landings) and all(landing.graspable for landing in self.landings)

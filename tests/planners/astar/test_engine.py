@@ -1,0 +1,48 @@
+"""The engine: a bound at the start, moves from it as steps, shares that fit the size."""
+
+import pytest
+from hypothesis import assume, given, settings
+
+from smash.planners.astar.compiled import INTERPRETED
+from smash.planners.astar.engine import Engine
+from smash.planners.astar.task import TOPPLED, make_setting
+from smash.problem import PlanOptions, StacksGoal, make_instance
+from smash.problem.sets.generators import generate
+from smash.problem.views.numbered import TOPPLE, Numbered
+from tests.oracle import optimal_cost
+from tests.strategies import instances, plan_options
+
+
+def engine_of(instance, options):
+    return Engine(make_setting(Numbered.of(instance), options), INTERPRETED, False)
+
+
+@settings(max_examples=60, deadline=None)
+@given(instances(max_blocks=4), plan_options())
+def test_the_first_bound_is_no_more_than_the_optimum(instance, options):
+    best = optimal_cost(instance, options)
+    assume(best is not None)
+    assert engine_of(instance, options).first_bound() <= best
+
+
+def test_moves_become_steps_with_the_direct_moves_that_they_free():
+    instance = make_instance(
+        name="x", blocks="abc", stacks=["s1", "s2"], start={"s1": "abc"}, goal=StacksGoal({"s1": ("a", "c", "b")})
+    )
+    problem = Numbered.of(instance)
+    steps = engine_of(instance, PlanOptions()).steps(problem, [(1, TOPPLED)])
+    assert steps == [(TOPPLE, 0, 2), (2, -1, 0), (1, -1, 0)]
+
+
+@pytest.mark.parametrize("topple", [True, False])
+def test_a_start_that_only_needs_direct_moves_needs_no_other(topple):
+    instance = make_instance(
+        name="x", blocks="ab", stacks=["s1", "s2"], start={"s1": "ab"}, goal=StacksGoal({"s2": ("b", "a")})
+    )
+    assert engine_of(instance, PlanOptions(topple)).steps(Numbered.of(instance), []) == [(1, 0, 1), (0, 0, 1)]
+
+
+def test_the_larger_the_problem_the_fewer_expansions_between_two_looks_at_the_clock():
+    shares = [engine_of(generate("multi", size, buffers=2)[0], PlanOptions()).share for size in (4, 9, 30, 200)]
+    assert shares == sorted(shares, reverse=True)
+    assert shares[-1] == 1

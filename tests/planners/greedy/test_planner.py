@@ -1,0 +1,75 @@
+"""The greedy planner: a plan wherever one exists, at any size."""
+
+import dataclasses
+from time import perf_counter
+
+import pytest
+from hypothesis import given, settings
+
+from smash.planners.greedy import GreedyPlanner, greedy_steps
+from smash.planners.greedy.construct import Construction
+from smash.planners.protocol import SolveOptions
+from smash.problem import PlanOptions
+from smash.problem.problem import Problem
+from smash.problem.sets.generators import generate
+from smash.problem.sets.suites import read_suite
+from smash.problem.views.numbered import cost_of
+from tests.oracle import optimal_cost
+from tests.strategies import instances, plan_options
+
+
+@settings(max_examples=300, deadline=None)
+@given(instances(max_blocks=4), plan_options())
+def test_finds_a_plan_exactly_where_one_exists(instance, options):
+    best = optimal_cost(instance, options)
+    result = GreedyPlanner().solve(instance, SolveOptions(options.topple, options.max_topple), 5)
+    if best is None:
+        assert result.status == "infeasible"
+    else:
+        assert result.cost is not None
+        assert result.cost >= best
+        assert result.status == ("optimal" if best == 0 else "feasible")
+
+
+@settings(max_examples=150, deadline=None)
+@given(instances(max_blocks=4, max_stacks=2, max_buffers=0, odd_names=True), plan_options())
+def test_one_and_two_locations_are_decided_like_exhaustive_search(instance, options):
+    best = optimal_cost(instance, options)
+    result = GreedyPlanner().solve(instance, SolveOptions(options.topple, options.max_topple), 5)
+    assert (result.actions is None) == (best is None)
+
+
+@pytest.mark.parametrize("topple", [True, False])
+@pytest.mark.parametrize("suite", ["multi-9", "single-9", "open-few-buffers", "open-on", "open-positions", "open-wide"])
+def test_every_committed_instance_gets_a_plan(suite, topple):
+    for instance in read_suite(suite):
+        assert GreedyPlanner().solve(instance, SolveOptions(topple), 0.2).actions is not None
+
+
+@pytest.mark.parametrize("topple", [True, False])
+def test_a_thousand_blocks_get_a_plan(topple):
+    instance = generate("multi", 1000)[0]
+    for buffers in (12, 1):
+        cut = dataclasses.replace(
+            instance,
+            buffers=instance.buffers[:buffers],
+            start={q: instance.start[q] for q in (*instance.stacks, *instance.buffers[:buffers])},
+        )
+        assert GreedyPlanner().solve(cut, SolveOptions(topple), 0.1).actions is not None
+
+
+@pytest.mark.parametrize("patient", [True, False])
+def test_past_the_deadline_there_is_the_first_pass_and_no_other(monkeypatch, patient):
+    passes = []
+    run = Construction.run
+    monkeypatch.setattr(Construction, "run", lambda self, *first: passes.append(self) or run(self, *first))
+    problem = Problem(generate("multi", 20, buffers=0)[0], PlanOptions(topple=False))
+    (plan,) = greedy_steps(problem, perf_counter(), patient=patient)
+    assert plan
+    assert len(passes) == 1
+
+
+def test_patient_passes_only_improve():
+    problem = Problem(generate("multi", 20, buffers=0)[0], PlanOptions(topple=False))
+    costs = [cost_of(steps) for steps in greedy_steps(problem, perf_counter() + 0.3, patient=True)]
+    assert costs == sorted(set(costs), reverse=True)

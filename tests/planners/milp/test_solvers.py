@@ -1,0 +1,102 @@
+"""The array form of a MILP: two solvers give the same optimum, starts are taken, files are written."""
+
+import sys
+
+import numpy as np
+import pytest
+
+from smash.planners.milp.arrays import MilpBuilder, SparseRows
+from smash.planners.milp.solvers import gurobi, highs
+from smash.problem import MalformedFile, Unsupported
+
+
+def cover(seed=0, elements=12, sets=20):
+    """Return a random set-cover model."""
+    draw = np.random.default_rng(seed)
+    builder = MilpBuilder()
+    columns = builder.add_columns(sets, cost=draw.integers(1, 5, sets))
+    member = draw.random((elements, sets)) < 0.3
+    member[:, 0] = True
+    rows, where = np.nonzero(member)
+    builder.add_rows(rows, columns[where], 1.0, count=elements, lower=1.0)
+    return builder.build(name=lambda j: f"take_{j}")
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_highs_and_gurobi_prove_the_same_optimum(seed):
+    pytest.importorskip("gurobipy")
+    model = cover(seed)
+    ours, theirs = highs.solve(model, time_limit=10), gurobi.solve(model, time_limit=10)
+    assert ours.status == theirs.status == "optimal"
+    assert ours.objective == pytest.approx(theirs.objective)
+    assert model.violation(ours.vector) < 1e-6
+
+
+def test_every_better_solution_is_reported_with_its_objective():
+    model, seen = cover(3, 40, 80), []
+    result = highs.solve(model, time_limit=10, on_solution=lambda t, value, vector: seen.append((t, value, vector)))
+    assert seen
+    assert all(value == pytest.approx(model.objective @ vector) for _, value, vector in seen)
+    assert seen[-1][1] == pytest.approx(result.objective)
+
+
+def test_a_contradiction_is_infeasible():
+    builder = MilpBuilder()
+    column = builder.add_columns(1)
+    builder.add_row(column, 1.0, lower=0.4, upper=0.6)
+    assert highs.solve(builder.build(), time_limit=5).status == "infeasible"
+
+
+def test_a_model_without_columns_is_solved():
+    assert highs.solve(MilpBuilder().build(), time_limit=5).status == "optimal"
+
+
+def test_a_solve_ends_where_it_is_asked_to():
+    asked = []
+    result = highs.solve(cover(1, 300, 600), time_limit=100, should_stop=lambda: asked.append(True) or True)
+    assert asked
+    assert result.status != "optimal"
+    assert result.nodes <= 1
+
+
+def test_a_model_is_written_with_the_names_of_its_columns(tmp_path):
+    highs.write(cover(), tmp_path / "m.mps")
+    assert "take_3" in (tmp_path / "m.mps").read_text()
+    with pytest.raises(MalformedFile):
+        highs.write(cover(), tmp_path / "m.txt")
+
+
+def test_a_start_is_taken_and_nothing_worse_is_reported():
+    model, seen = cover(3, 40, 80), []
+    best = highs.solve(model, time_limit=60)
+    again = highs.solve(
+        model, time_limit=60, start=best.vector, on_solution=lambda t, value, vector: seen.append(value)
+    )
+    assert again.objective == pytest.approx(best.objective)
+    assert seen == pytest.approx([best.objective] * len(seen))
+
+
+def test_the_bound_of_a_proven_optimum_is_its_objective():
+    result = highs.solve(cover(2), time_limit=60, absolute_gap=1e-6)
+    assert (result.status, result.bound) == ("optimal", pytest.approx(result.objective))
+
+
+def test_without_gurobipy_the_extra_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "gurobipy", None)
+    with pytest.raises(Unsupported, match="extra `gurobi`"):
+        gurobi.solve(cover(), time_limit=1)
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize(("rows", "columns", "entries"), [(0, 0, 0), (3, 4, 0), (5, 3, 40), (20, 30, 50)])
+def test_a_matrix_of_entries_adds_up_what_lies_at_one_place(seed, rows, columns, entries):
+    draw = np.random.default_rng(seed)
+    at, where = draw.integers(0, max(rows, 1), entries), draw.integers(0, max(columns, 1), entries)
+    values, vector = draw.choice([-1.0, 1.0, 2.0], entries), draw.integers(-5, 5, columns).astype(float)
+    dense = np.zeros((rows, columns))
+    np.add.at(dense, (at, where), values)
+    matrix = SparseRows.of_entries(at, where, values, (rows, columns))
+    assert np.array_equal(matrix @ vector, dense @ vector)
+    spans = [matrix.indices[begin:end] for begin, end in zip(matrix.indptr, matrix.indptr[1:], strict=False)]
+    assert all((np.diff(span) > 0).all() for span in spans)
+    assert matrix.nnz == len({*zip(at, where, strict=True)}) == len(matrix.indices)
