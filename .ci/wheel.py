@@ -29,6 +29,21 @@ plan = smash.plan(instance)
 assert smash.check(instance, plan)
 assert plan.cost == 4, plan.cost
 """
+ANALYSIS = """
+import smash
+instance = smash.make_instance({"s1": ["b1", "b2"]}, {"s2": ["b2", "b1"]})
+assert smash.draw(instance, smash.plan(instance), "drawn.png").axes
+assert len(smash.compare([instance], ["greedy", "astar"], budget=2)) == 2
+"""
+WITHOUT = """
+import smash
+try:
+    smash.draw(smash.make_instance({"s1": ["b1"]}, {"s2": ["b1"]}))
+except smash.SmashError as error:
+    assert "smash-testbed[analysis]" in str(error), error
+else:
+    raise AssertionError("drawn without matplotlib")
+"""
 SUITES = """
 import smash
 assert len(smash.suite("multi-9")) == 20
@@ -123,6 +138,7 @@ def check_planning(installed: Installed) -> None:
     """Check what works without any extra."""
     installed.expect("-c", FIVE_LINES)
     installed.expect("-c", SUITES)
+    installed.expect("-c", WITHOUT)
     installed.smash("--help")
     installed.smash("planners")
     installed.smash("plan", "figure1.json", "--out", "plan.json")
@@ -141,6 +157,7 @@ def check_planning(installed: Installed) -> None:
 
 def check_analysis(installed: Installed) -> None:
     """Check what works with the extra `analysis`."""
+    installed.expect("-c", ANALYSIS)
     (installed.folder / "small.toml").write_text(
         'name = "small"\nsuites = ["towers"]\nbudgets = [2]\n[[planners]]\nname = "greedy"\n'
     )

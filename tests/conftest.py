@@ -2,16 +2,15 @@
 
 import json
 import re
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
-from smash.problem.extras import EXTRAS
+from smash.problem.extras import EXTRAS, MissingExtra, is_there
 from tests.experiments import troubled
 
 ROOT = Path(__file__).parent.parent
-LACKING = {module: extra for extra, modules in EXTRAS.items() for module in modules if find_spec(module) is None}
+LACKING = {module: extra for extra, modules in EXTRAS.items() for module in modules if not is_there(module)}
 """Modules that an extra brings and that are not installed here: tests that import them are skipped, and say so."""
 
 
@@ -40,11 +39,14 @@ def pytest_pycollect_makemodule(module_path, parent):
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call():
-    """Skip a test that imports, on its way, a module of an extra that is not installed."""
+    """Skip a test that asks, on its way, for a module of an extra that is not installed."""
     try:
         return (yield)
     except ModuleNotFoundError as error:
         _skip_without([(error.name or "").partition(".")[0]])
+        raise
+    except MissingExtra as error:
+        _skip_without([error.module])
         raise
 
 

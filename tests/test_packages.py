@@ -55,7 +55,12 @@ def found_in(site, folder):
     others = sysconfig.get_path("purelib")  # its .pth files are not read: the tree is not on the path
     lines = f"import site, sys; site.addsitedir({str(site)!r}); sys.path.append({others!r})\n{FOUND}"
     ended = subprocess.run(
-        [sys.executable, "-S", "-P", "-c", lines], cwd=folder, check=True, capture_output=True, text=True, timeout=100
+        [sys.executable, "-S", "-P", "-E", "-c", lines],
+        cwd=folder,
+        check=True,
+        capture_output=True,
+        text=True,
+        timeout=100,
     )
     return json.loads(ended.stdout)
 

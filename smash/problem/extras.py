@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from importlib.util import find_spec
 
 from smash.problem.errors import Unsupported
@@ -10,12 +11,14 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "analysis": ("matplotlib", "pandas", "jinja2"),
     "parquet": ("pyarrow",),
     "pddl": ("unified_planning", "up_fast_downward", "up_symk", "up_enhsp", "up_aries"),
-    "execution": ("pybullet", "ompl", "pinocchio", "coal", "toppra", "imageio", "meshcat", "scipy"),
+    "execution": ("pybullet", "pybullet_data", "ompl", "pinocchio", "coal", "toppra", "scipy", "meshcat", "imageio"),
     "cluster": ("dask", "distributed"),
     "gurobi": ("gurobipy", "scipy"),
 }
 """Extra -> the modules that come with it."""
 
+NO_WHEELS = {"pybullet": (3, 12), "pybullet_data": (3, 12)}
+"""Module -> the first Python that it has no wheels for."""
 EXECUTION = ("pybullet", "ompl", "pinocchio", "coal", "toppra")
 """What an episode is carried out with."""
 TABLES = ("pandas", "matplotlib", "jinja2")
@@ -27,7 +30,16 @@ class MissingExtra(Unsupported):
 
     def __init__(self, who: str, module: str) -> None:
         self.module = module
-        super().__init__(f"{who} needs {module}: {install_line(module)}")
+        super().__init__(f"{who} needs {module}{_wanting(module)}")
+
+
+def _wanting(module: str) -> str:
+    """Return how to get a module, or why it is not to be had here."""
+    limit = NO_WHEELS.get(module)
+    if limit is None or sys.version_info[:2] < limit:
+        return f": {install_line(module)}"
+    here, before = ".".join(map(str, sys.version_info[:2])), f"{limit[0]}.{limit[1] - 1}"
+    return f", which has no wheels for Python {here}: use Python {before}"
 
 
 def require(who: str, *modules: str) -> None:

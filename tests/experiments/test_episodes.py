@@ -16,9 +16,12 @@ from smash.experiments.episodes.series import episode_runs, target_depth
 from smash.experiments.episodes.worker import EpisodeLost, EpisodeWorker
 from smash.problem import PositionsGoal, make_instance
 from smash.problem.errors import SmashError
+from smash.problem.extras import is_there
 from smash.records.episodes import Episode
 from smash.records.files import EPISODES
 from tests.execution.episodes import swapped_pair
+
+simulated = pytest.mark.skipif(not is_there("pybullet"), reason="pybullet is not installed (the extra execution)")
 
 
 def smash(*arguments):
@@ -41,6 +44,7 @@ def results(tmp_path_factory):
     return folder / "out"
 
 
+@simulated
 def test_every_plan_is_carried_out_once_and_kept(results):
     ended = smash("episodes", results, "--policy", "open", "--policy", "replan")
     assert ended.returncode == 0, ended.stderr
@@ -53,6 +57,7 @@ def test_every_plan_is_carried_out_once_and_kept(results):
     assert (results / "episodes.jsonl").read_text() == first
 
 
+@simulated
 def test_a_process_that_dies_costs_one_episode_and_the_next_is_the_same_as_alone(results):
     run = episode_runs(results, [1], ["open"])[0]
     worker = EpisodeWorker()
@@ -77,6 +82,7 @@ def test_only_plans_of_the_named_planner_are_carried_out(results):
         episode_runs(results, [0], ["open"], labels=["smash"])
 
 
+@simulated
 def test_a_dry_run_runs_nothing(results):
     ended = smash("episodes", results, "--seeds", "3", "--dry-run")
     assert ended.returncode == 0
@@ -114,6 +120,7 @@ def alive(mark):
     return found
 
 
+@simulated
 @pytest.mark.slow
 @pytest.mark.timeout(900)
 def test_killed_at_random_moments_no_episode_is_lost_or_repeated(results, tmp_path, monkeypatch):
@@ -146,6 +153,7 @@ def test_killed_at_random_moments_no_episode_is_lost_or_repeated(results, tmp_pa
     assert made == determined(undisturbed)
 
 
+@simulated
 def test_a_damaged_last_episode_is_set_aside_and_carried_out_again(results, tmp_path):
     for name in ("runs.jsonl", EPISODES.name):
         shutil.copyfile(results / name, tmp_path / name)
@@ -157,6 +165,7 @@ def test_a_damaged_last_episode_is_set_aside_and_carried_out_again(results, tmp_
     assert (tmp_path / "episodes.damaged").read_bytes().strip() in whole
 
 
+@simulated
 def test_an_interrupted_one_ends_at_once_and_keeps_what_had_ended(results, tmp_path):
     shutil.copyfile(results / "runs.jsonl", tmp_path / "runs.jsonl")
     running = subprocess.Popen(
