@@ -87,7 +87,7 @@ ENCODINGS = {
 BY_DOMAIN = {encoding.domain: encoding for encoding in ENCODINGS.values()}
 TOPPLE_ENCODINGS = ("conditional", "chain")
 """The two ways of this package to tell a topple: one action with conditional effects, or a chain of STRIPS actions."""
-FAMILY = "chain"
+COMPOSED = "chain"
 """The way in which further aggregating actions and costs can be told."""
 
 
@@ -141,7 +141,9 @@ def unsupported_reason(problem: Problem, wanted: str) -> str | None:
     if not problem.plain:
         get_encoding(wanted)
         return (
-            None if wanted == FAMILY else f"the {wanted} encoding knows topple alone, at cost 1; use the chain encoding"
+            None
+            if wanted == COMPOSED
+            else f"the {wanted} encoding knows topple alone, at cost 1; use the chain encoding"
         )
     if cap is not None and get_encoding(wanted).with_cap is None:
         return f"the {wanted} encoding cannot count the blocks of a topple (max_topple {cap}); use the chain encoding"

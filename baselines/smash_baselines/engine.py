@@ -15,7 +15,7 @@ from smash.planners.protocol import OnIncumbent, ProblemPlanner, Settings, Solve
 from smash.problem.errors import IllegalAction, PlannerCrashed, PlannerOutOfMemory, Unsupported
 from smash.problem.plan import Plan
 from smash.problem.problem import Problem
-from smash_baselines.encodings import FAMILY, UnknownEncoding, encoding_names, get_encoding, unsupported_reason
+from smash_baselines.encodings import COMPOSED, UnknownEncoding, encoding_names, get_encoding, unsupported_reason
 from smash_baselines.engines.outcomes import Outcome
 from smash_baselines.engines.process import MEMORY_LIMIT
 from smash_baselines.facts import named_blocks, trim_buffers
@@ -86,7 +86,7 @@ class EnginePlanner(ProblemPlanner):
 
     def encoding_of(self, problem: Problem) -> str:
         """Return how this problem is told to it."""
-        return self.encoding if not self.falls_back or problem.plain else FAMILY
+        return self.encoding if not self.falls_back or problem.plain else COMPOSED
 
     def with_encoding(self, encoding: str) -> Self:
         """Return the same planner on another encoding: what `NAME:ENCODING` means.

@@ -1,19 +1,17 @@
 """One executor: Franka Panda in PyBullet, OMPL motions, partially grounded execution.
 
-The motion half, bottom up (lengths in m, angles in rad, times in s; the robot's base is the world's origin, z = 0 the
-table top; configurations have shape (7,)):
+The rooms; each imports those before it in this list, none those after it:
 
-- `poses`: `ToolPose`, `top_down(position, yaw)`: the point between the fingertips, gripper down.
-- `robot`: `panda()` (forward kinematics, Jacobian), limits, `READY`.
-- `scene`: `Scene` (boxes as arrays), `HandState` (finger opening, `Attached` block).
-- `kinematics`: `inverse(pose, reference, count=)`, `along_line`.
-- `collision`: `CollisionChecker(scene, hand, margin)`: microseconds, on the safe side; `hulls`: `HullChecker`, exact.
-- `motion`: `MotionPlanner`: `plan` (to configurations), `line` (tool on a straight line).
-- `timing`: `time_path(path, pace)` gives a `Trajectory`; a `Pace` limits joints and tool.
-- `steps`, `pushes`: the motions of a pick, a place, a topple, from where the arm is.
-- `errors`: `NoIk` and `NoMotion`, with the failure's name and exit code 5.
+- `smash.motion`: the arm without blocks.
+- `scene`: the table (`tabletop`, `tray`), its file (`scene_file`), where things are (`block_pose`, `geometry`) and
+  where they begin (`start`).
+- `actions`: how the arm carries out each action: `arm_motions` (free motions), `pick_and_place`, and by the interface
+  of `kind` topple, carry and lift, with the list of them in `registry`.
+- `physics`: the simulated world of one episode. `layout`: scenes judged and drawn.
+- here: `readback` (the law's state from settled poses), `grounding` (what is planned when), `performing` and
+  `recovery` (one action, and what is done where it fails), `executor` (an episode), `episode` (its record), `policy`
+  (what is done about failures), `errors` (their names).
+- `trials` (measurements), `viewing` (replays, films, trajectories).
 
-The executor's half: `tabletop` and `scene_file` (the layout), `world` (physics), `grounding` (what is planned when),
-`performing` and `recovery` (one action, and what is done where it fails), `executor` (an episode), `readback` (the
-law's state from settled poses).
+What an action does to the state is the law's to say (`smash.problem.rules`); here is how it comes about on the table.
 """

@@ -13,20 +13,20 @@ from time import perf_counter
 
 import numpy as np
 
-from smash.execution.actions.kind import Geometry
-from smash.execution.actions.pick_and_place import Steps
+from smash.execution.actions.arm_motions import ArmMotions
 from smash.execution.episode import Arrangement, Episode, Failure, Origin, Performed, Times, Totals
+from smash.execution.errors import Fell, NotAtGoal
 from smash.execution.grounding import Grounder, Task
 from smash.execution.performing import Performer
 from smash.execution.physics.world import Frame, World
 from smash.execution.policy import Policy
 from smash.execution.readback import NOWHERE, fallen_off
 from smash.execution.recovery import Recovery
+from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.start import starting_carriers, starting_poses
 from smash.execution.scene.tabletop import Tabletop
-from smash.motion.errors import ExecutionFailure, Fell, NotAtGoal
 from smash.motion.robot import READY
-from smash.problem.errors import IllegalAction
+from smash.problem.errors import ExecutionFailure, IllegalAction
 from smash.problem.files.plans import action_from_list, action_list
 from smash.problem.model import Action, Instance, PlanOptions, State
 from smash.problem.plan import Plan
@@ -78,8 +78,8 @@ class Executor:
         self.replanner = replanner
         self.law = Law(instance, plan.options)
         self.table = Geometry(tabletop.bind(instance), tabletop.bind_stations(instance))
-        self.steps = Steps(tabletop, seed)
-        self.grounder = Grounder(self.steps)
+        self.arm = ArmMotions(tabletop, seed)
+        self.grounder = Grounder(self.arm)
         self.performed: list[Performed] = []
         self.failed_at: Performed | None = None
         self.replans = 0
@@ -90,7 +90,7 @@ class Executor:
 
     def run(self) -> Episode:
         """Carry out the plan and judge the result."""
-        self.steps.warm_up()
+        self.arm.warm_up()
         generator = np.random.default_rng(self.seed)
         carriers = starting_carriers(self.instance, self.table.stations, self.tabletop)
         poses = starting_poses(self.instance, self.table.slots, self.tabletop, generator, carriers)
@@ -106,11 +106,11 @@ class Executor:
         """Plan, execute, judge, and begin anew from what is observed as long as the policy allows it."""
         origin: Origin = "plan"
         failure = self._start_shortfall()
-        tasks = self._ground(self.plan.actions or ()) if failure is None else []
+        tasks = self._ground(self.plan.actions or (), self.law) if failure is None else []
         self.offline = sum(task.seconds for task in tasks)
         self.offline_cpu = sum(task.cpu_seconds for task in tasks)
         while True:
-            failure = failure or self._carry_out(tasks, origin) or self._judge()
+            failure = failure or self._perform_all(tasks, origin) or self._judge()
             self.failed_at = self.performed[-1] if self.performed else None
             if failure is None or self.replanner is None or self.replans >= self.policy.replans:
                 return failure
@@ -125,10 +125,10 @@ class Executor:
         start, observed = State.start_of(self.instance), self.performer.observe()
         return None if observed.key() == start.key() else Fell(f"at the start, {_difference(start, observed)}")
 
-    def _ground(self, actions: Sequence[Action]) -> list[Task]:
-        return self.grounder.ground(actions, self.performer.observe(), self.performer.look(), self.world.commanded())
+    def _ground(self, actions: Sequence[Action], law: Law) -> list[Task]:
+        return self.grounder.ground(actions, law, self.performer.look(), self.world.commanded())
 
-    def _carry_out(self, tasks: Sequence[Task], origin: Origin) -> ExecutionFailure | None:
+    def _perform_all(self, tasks: Sequence[Task], origin: Origin) -> ExecutionFailure | None:
         """Perform tasks until one fails or what is observed makes the rest of the plan senseless."""
         expected = self.performer.observe()
         rest = [task.action for task in tasks]
@@ -234,9 +234,8 @@ class Executor:
         begun = perf_counter()
         actions = self._ask(remaining)
         self.task_seconds += perf_counter() - begun
-        if actions is None or not Law(remaining, self.plan.options).check(actions).accepted:
-            return None
-        return self._ground(actions)
+        law = Law(remaining, self.plan.options)
+        return self._ground(actions, law) if actions is not None and law.check(actions).accepted else None
 
     def _ask(self, instance: Instance) -> Sequence[Action] | None:
         """A plan for what is observed, without topples where they keep failing."""

@@ -11,17 +11,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from smash.execution.actions.kind import Geometry
-from smash.execution.actions.pick_and_place import Approach, Move, Segment, Steps
+from smash.execution.actions.arm_motions import ArmMotions, Segment
+from smash.execution.actions.pick_and_place import Approach, PickAndPlace
 from smash.execution.actions.registry import MOTIONS
 from smash.execution.scene.block_pose import BlockPose, standing
+from smash.execution.scene.geometry import Geometry
 from smash.execution.stopwatch import Stopwatch
-from smash.motion.errors import ExecutionFailure, NoMotion
+from smash.motion.errors import NoMotion
+from smash.motion.move import Move
 from smash.motion.obstacles import Scene
 from smash.motion.poses import Vector
-from smash.problem.actions.registry import kind_of
-from smash.problem.errors import Unsupported
+from smash.problem.errors import ExecutionFailure, Unsupported
 from smash.problem.model import Action, Aggregating, Pick, Place, State
+from smash.problem.rules import Law
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,26 +58,30 @@ class Task:
 
 
 class Grounder:
-    """Plans tasks for a sequence of actions from a given geometric state.
+    """Plans tasks for a sequence of actions: what they do to the law's state is the law's to say, poses are its own.
 
     Args:
-        steps: Plans the motions of one action.
+        arm: Plans the motions of one action.
     """
 
-    def __init__(self, steps: Steps) -> None:
-        self.steps = steps
+    def __init__(self, arm: ArmMotions) -> None:
+        self.arm = arm
+        self.pick_and_place = PickAndPlace(arm)
 
-    def ground(self, actions: Sequence[Action], state: State, where: Geometry, joints: Vector) -> list[Task]:
+    def ground(self, actions: Sequence[Action], law: Law, where: Geometry, joints: Vector) -> list[Task]:
         """Plan all that the poses known at the start determine.
 
         Args:
-            actions: A plan that is legal from `state`.
-            state: Where the blocks are, by the law.
-            where: The poses of all of them, and of the carriers.
+            actions: A plan.
+            law: Of the instance that the plan begins in.
+            where: The poses of all its blocks and carriers.
             joints: Where the arm is [rad], shape (7,).
+
+        Raises:
+            IllegalAction: at the first action that the law refuses.
         """
-        state, where, tasks = state.copy(), where.seen(where.blocks, where.carriers), []
-        for action in actions:
+        where, tasks = where.seen(where.blocks, where.carriers), []
+        for state, action in zip(law.states(actions), actions, strict=False):
             with Stopwatch() as watch:
                 try:
                     task = self.task(action, state, where, joints)
@@ -99,18 +105,18 @@ class Grounder:
                 if block not in where.blocks:
                     return Task(action, None)
                 pose, scene = where.blocks[block], self._scene(where)
-                return Task(action, self.steps.pick(joints, block, pose, scene), anchor=pose.position)
+                return Task(action, self.pick_and_place.pick(joints, block, pose, scene), anchor=pose.position)
             case Place(block, target):
                 scene = self._scene(where)
-                way = approach or self.steps.landing(joints, block, self.stand(target, state, where), scene)
+                way = approach or self.pick_and_place.landing(joints, block, self.stand(target, state, where), scene)
                 if block not in where.blocks:
                     return Task(action, None, way)
-                return Task(action, self.steps.place(joints, block, way, scene), way)
+                return Task(action, self.pick_and_place.place(joints, block, way, scene), way)
             case Aggregating():
                 motion = MOTIONS.get(type(action))
                 if motion is None:
                     raise Unsupported(f"{action}: the arm has no motion for it")
-                segments = motion.plan(self.steps, joints, action, state, where)
+                segments = motion.plan(self.arm, joints, action, state, where)
                 return Task(action, segments, anchor=self.anchor(action, state, where))
 
     def anchor(self, action: Action, state: State, where: Geometry) -> Vector | None:
@@ -129,32 +135,21 @@ class Grounder:
             NoMotion: where a block lies across all cells of a carrier.
         """
         if target in where.carriers:
-            tray, pose = self.steps.tray, where.carriers[target]
+            tray, pose = self.arm.tray, where.carriers[target]
             free = tray.free_cells(pose, where.blocks)
             if not free:
                 raise NoMotion(f"no cell of carrier {target!r} is free")
             return tray.cell(pose, free[0])
         slot = where.slots[target]
-        return standing(slot.x, slot.y, (len(state.piles[target]) + 0.5) * self.steps.side, slot.angle)
+        return standing(slot.x, slot.y, (len(state.piles[target]) + 0.5) * self.arm.side, slot.angle)
 
     def _scene(self, where: Geometry) -> Scene:
-        return self.steps.scene(where.blocks, where.carriers)
+        return self.arm.scene(where.blocks, where.carriers)
 
     def _foresee(self, action: Action, state: State, where: Geometry) -> None:
-        """Move state and known poses on; a block in the hand keeps its entry: it is known to be held."""
+        """Move the known poses on from `state`; a block in the hand keeps its entry: it is known to be held."""
         match action:
-            case Pick(block, source):
-                if source in state.piles:
-                    state.piles[source].remove(block)
-                else:
-                    state.carried.get(source, state.table).discard(block)
             case Place(block, target):
                 where.blocks[block] = self.stand(target, state, where)
-                if target in state.piles:
-                    state.piles[target].append(block)
-                else:
-                    state.carried[target].add(block)
-            case Aggregating():
-                if type(action) in MOTIONS:
-                    MOTIONS[type(action)].foresee(self.steps, action, state, where)
-                kind_of(action).apply(state, action)
+            case Aggregating() if type(action) in MOTIONS:
+                MOTIONS[type(action)].foresee(self.arm, action, state, where)

@@ -11,16 +11,20 @@ from math import hypot
 
 import numpy as np
 
-from smash.execution.actions.kind import Geometry
-from smash.execution.actions.pick_and_place import OPEN_SECONDS, OPENINGS, Approach, Grip, Move, Segment
+from smash.execution.actions.arm_motions import OPEN_SECONDS, OPENINGS, Grip, Segment
+from smash.execution.actions.pick_and_place import Approach
 from smash.execution.actions.registry import MOTIONS
 from smash.execution.episode import Performed
+from smash.execution.errors import OutOfReach, Slip
 from smash.execution.grounding import Grounder, Task
 from smash.execution.physics.world import World
 from smash.execution.policy import Policy
 from smash.execution.readback import read_state
+from smash.execution.scene.geometry import Geometry
 from smash.execution.stopwatch import Stopwatch
-from smash.motion.errors import ExecutionFailure, NoIk, OutOfReach, Slip
+from smash.motion.errors import NoIk
+from smash.motion.move import Move
+from smash.problem.errors import ExecutionFailure
 from smash.problem.model import TABLE, Aggregating, Pick, Place, State
 
 GRASPED_WITHIN = 0.5
@@ -96,11 +100,11 @@ class Performer:
             segments = self._planned(task, state, row)
         match task.action:
             case Pick(block, _):
-                carry_out(self.world, segments)
+                follow(self.world, segments)
                 self._require_grasp(block)
                 self.hand = block
             case Place(block, target):
-                carry_out(self.world, segments)
+                follow(self.world, segments)
                 self.hand = None
                 self.world.wait(PAUSE)
                 if not _stands_on(block, target, self.observe()):
@@ -116,7 +120,7 @@ class Performer:
         motion = MOTIONS[type(action)]
         most = MOST_MOTIONS if self.policy.repair else motion.motions(action, self.observe())
         for number in range(1, most + 1):
-            carry_out(self.world, segments)
+            follow(self.world, segments)
             self.world.settle()
             state = self.observe()
             if number == most or not motion.unfinished(action, state):
@@ -157,11 +161,11 @@ class Performer:
             return [None]
         if not self.policy.repair or not isinstance(task.action, Place):
             return [promised, None]
-        steps, block = self.grounder.steps, task.action.block
-        scene = steps.scene(where.blocks, where.carriers)
-        if steps.still_free(promised, block, scene):
+        hand, block = self.grounder.pick_and_place, task.action.block
+        scene = self.grounder.arm.scene(where.blocks, where.carriers)
+        if hand.still_free(promised, block, scene):
             return [promised, None]
-        return [None, promised] if steps.still_free(promised, block, scene, SCENE_ALLOWANCE) else [None]
+        return [None, promised] if hand.still_free(promised, block, scene, SCENE_ALLOWANCE) else [None]
 
     def _usable(self, task: Task, state: State) -> bool:
         """Whether a motion planned earlier starts where the arm is, and fits the scene (if the policy looks at it)."""
@@ -174,7 +178,7 @@ class Performer:
         anchor = self.grounder.anchor(task.action, state, where)
         if anchor is not None and task.anchor is not None and hypot(*(anchor - task.anchor)[:2]) > MOVED:
             return False
-        scene = self.grounder.steps.scene(where.blocks, where.carriers)
+        scene = self.grounder.arm.scene(where.blocks, where.carriers)
         return all(move.free(scene, SCENE_ALLOWANCE) for move in moves)
 
     def _require_grasp(self, block: str) -> None:
@@ -190,7 +194,7 @@ def _stands_on(block: str, target: str, state: State) -> bool:
     return state.piles[target][-1:] == [block] if target in state.piles else block in state.carried[target]
 
 
-def carry_out(world: World, segments: Sequence[Segment]) -> None:
+def follow(world: World, segments: Sequence[Segment]) -> None:
     """Let the simulated arm and fingers do what was planned."""
     for segment in segments:
         if isinstance(segment, Grip):

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import pi
 
-from smash.execution.actions.kind import Geometry
 from smash.execution.scene.block_pose import BlockPose
+from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.tabletop import Slot, Tabletop
 from smash.execution.scene.tray import heading
 from smash.problem.model import State

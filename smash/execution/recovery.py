@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from smash.execution.actions.registry import MOTIONS
 from smash.execution.performing import Performer
-from smash.motion.errors import ExecutionFailure
+from smash.problem.errors import ExecutionFailure
 from smash.problem.model import TABLE, Action, Aggregating, Instance, Pick, Place
 
 NEAR = 0.11

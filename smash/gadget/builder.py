@@ -2,25 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import Protocol
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Iterable, Sequence
+from typing import ClassVar, Self
 
-from smash.gadget.elements import Aggregate, Edge, EdgeKind, Node, NodeKey, NodeKind, PartReading, Token
+from smash.gadget.elements import Aggregate, Edge, EdgeKind, Node, NodeKey, NodeKind, Token
 from smash.gadget.graph import Gadget
 from smash.problem.costs import UNIT_COSTS, Costs
+from smash.problem.model import Aggregating, Instance, PlanOptions, State
 
 
-class AggregatingPart(PartReading, Protocol):
+class AggregatingPart(ABC):
     """One aggregating action (topple, …) as a part of a gadget. Each lives in one small file.
 
     The part says where the action gathers objects, how many, what it costs, what it locks and touches, and whether
     its outcome is grounded (all in `Aggregate`), and which action of the law an activation stands for. Models, the
     motion rules, encoding, decoding and drawing ask nothing else.
+
+    Attributes:
+        name: the action's name, as in `smash.problem.actions.registry`.
+        stacks_several: whether an activation puts blocks on a pile (one that takes what is in place, in its order).
     """
 
+    name: ClassVar[str]
+    stacks_several: ClassVar[bool] = False
+
+    @classmethod
+    @abstractmethod
+    def of(cls, instance: Instance, options: PlanOptions) -> Self | None:
+        """Return the part of an instance's gadget; None: the gadget does without."""
+
+    @abstractmethod
     def extend(self, builder: GadgetBuilder) -> None:
         """Add the part's nodes, edges, tokens and aggregates."""
-        ...
+
+    @abstractmethod
+    def action(self, aggregate: Aggregate, blocks: Collection[str], state: State) -> Aggregating:
+        """Return the action that an activation of `aggregate` with `blocks` stands for, in the state before it."""
+
+    @abstractmethod
+    def at(self, action: Aggregating, state: State) -> tuple[str, ...] | None:
+        """Return the `at` of the aggregate that `action` activates in the state before it; None: not this part's."""
 
 
 class GadgetBuilder:
@@ -123,6 +145,10 @@ class GadgetBuilder:
     def node(self, kind: NodeKind, location: str | None = None, index: int = 0) -> int:
         """Return the number of a node that is there already."""
         return self._numbers[NodeKey(kind, location, index)]
+
+    def has(self, kind: NodeKind, location: str | None = None, index: int = 0) -> bool:
+        """Return whether a node is there already."""
+        return NodeKey(kind, location, index) in self._numbers
 
     def top(self, location: str) -> int:
         """Return the number of v_s^l of `location`."""

@@ -134,10 +134,11 @@ class Token:
 class Aggregate:
     """One place of an aggregating action: what one activation moves at once, and what holds meanwhile.
 
-    Pebbles are gathered in one of three ways. With `locks`, they are staged in the gathering node before (v_{T_s});
-    with `token`, they are those in the gathering node when the token leaves it, none included; with neither, they are
-    the top of a pile, in place: `edges` are then rungs from the top node downward, and a rung is taken only together
-    with the ones above it, so that order and coherence are kept.
+    Pebbles are gathered in one of four ways. With `locks`, they are staged in the gathering node before (v_{T_s});
+    with `token`, they are those in the gathering node when the token leaves it, none included; with `gather` alone,
+    they are all in the gathering node, whose token stays; without it they are the top of a pile, in place: `edges` are
+    then rungs from the top node downward, and a rung is taken only together with the ones above it, so that order and
+    coherence are kept.
 
     Attributes:
         part: name of the part that added it (`topple`).

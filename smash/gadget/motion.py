@@ -181,7 +181,7 @@ def _activation_fault(motion: PebbleMotion, moves: list[Move], step: int) -> str
         return "an activation moves another token than its own"
     if taken.total() - len(tokens) > aggregate.capacity:
         return f"an activation moves {taken.total() - len(tokens)} pebbles, its capacity is {aggregate.capacity}"
-    if aggregate.gather in motion.layers[step + 1]:
+    if aggregate.gather in motion.layers[step + 1][: len(motion.blocks)]:
         return "an activation leaves pebbles in its gathering node"
     if set(aggregate.edges[: len(taken)]) != set(taken):
         return "a rung is taken without the ones above it"

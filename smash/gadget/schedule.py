@@ -127,13 +127,13 @@ class Scheduler:
         number = self._gadget.aggregate(name, at)
         aggregate = self._gadget.aggregates[number]
         blocks = kind_of(action).gathered(self._state, action)
-        self._law.apply(self._state, action)
-        if aggregate.token is not None:
-            step = self._carry(aggregate, blocks)
+        self._law.carry_out(self._state, action)
+        if aggregate.in_place:
+            step = self._move_in_place(aggregate, blocks)
         elif aggregate.locks is not None:
             step = self._stage(aggregate, aggregate.locks, blocks)
         else:
-            step = self._move_in_place(aggregate, blocks)
+            step = self._empty(aggregate, blocks)
         self._schedule.active[step] = number
 
     def _idle(self, step: int) -> int:
@@ -152,22 +152,26 @@ class Scheduler:
             self._enter(block, step + 1, aggregate.gather)
         step = self._idle(self._free[location])
         self._free[location] = step + 1
-        for block in blocks:
-            self._enter(block, step + 1, self._gadget.edges[aggregate.edges[0]].head)
-            self._exposed[block] = step + 2
+        self._arrive(blocks, step + 1, self._gadget.edges[aggregate.edges[0]].head)
         return step
 
-    def _carry(self, aggregate: Aggregate, blocks: Sequence[str]) -> int:
-        """Move a token, with the blocks at its node."""
-        assert aggregate.token is not None
+    def _empty(self, aggregate: Aggregate, blocks: Sequence[str]) -> int:
+        """Move the blocks at a token's node, and the token where the action takes it along."""
         step = self._idle(max(self._tokens_free, *(self._free[name] for name in aggregate.touches)))
         head = self._gadget.edges[aggregate.edges[0]].head
-        for block in blocks:
-            self._enter(block, step + 1, head)
-        self._schedule.tokens[aggregate.token].append((step + 1, head))
-        self._tokens_free = step + 1
+        self._arrive(blocks, step + 1, head)
+        if aggregate.token is not None:
+            self._schedule.tokens[aggregate.token].append((step + 1, head))
+            self._tokens_free = step + 1
         self._free.update(dict.fromkeys(aggregate.touches, step + 1))
         return step
+
+    def _arrive(self, blocks: Sequence[str], layer: int, node: int) -> None:
+        """Let blocks be at a node from a layer on; those on the table can be picked a step later."""
+        for block in blocks:
+            self._enter(block, layer, node)
+            if self._gadget.nodes[node].kind is NodeKind.TABLE:
+                self._exposed[block] = layer + 1
 
     def _move_in_place(self, aggregate: Aggregate, blocks: Sequence[str]) -> int:
         """Move the top of a pile (topmost block first) onto another one."""

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import pairwise
 from typing import Any
 
 import coal
@@ -142,13 +141,3 @@ class HullChecker:
             for near in (*_NEAR_BASE, "panda_link3_0", "panda_link4_0", "panda_link5_0"):
                 self._pair(name, near)
         return names
-
-
-def densify(waypoints: NDArray[np.float64], step: float) -> NDArray[np.float64]:
-    """The same joint polyline with no joint moving more than `step` [rad] between rows: (W, 7) to (T, 7)."""
-    pieces = [waypoints[:1]]
-    for begin, end in pairwise(waypoints):
-        count = max(1, int(np.ceil(float(np.max(np.abs(end - begin))) / step)))
-        fractions = np.arange(1, count + 1)[:, None] / count
-        pieces.append(begin + fractions * (end - begin))
-    return np.concatenate(pieces)

@@ -1,9 +1,10 @@
-"""Joint paths (where, not when) and the rounding of their corners."""
+"""Joint paths (where, not when), points close together on them, and the rounding of their corners."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -50,6 +51,16 @@ class Path:
     def reversed(self) -> Path:
         """The same path walked backwards."""
         return Path(np.ascontiguousarray(self.waypoints[::-1]), self.kind)
+
+
+def densify(waypoints: Waypoints, step: float) -> Waypoints:
+    """The same joint polyline with no joint moving more than `step` [rad] between rows: (W, 7) to (T, 7)."""
+    pieces = [waypoints[:1]]
+    for begin, end in pairwise(waypoints):
+        count = max(1, int(np.ceil(float(np.max(np.abs(end - begin))) / step)))
+        fractions = np.arange(1, count + 1)[:, None] / count
+        pieces.append(begin + fractions * (end - begin))
+    return np.concatenate(pieces)
 
 
 def round_corners(waypoints: Waypoints, free: Callable[[Waypoints], bool]) -> Waypoints:

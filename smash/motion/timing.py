@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from smash.motion.errors import NoMotion
-from smash.motion.hulls import densify
-from smash.motion.paths import Path, Waypoints
+from smash.motion.paths import Path, Waypoints, densify
 from smash.motion.robot import ACCELERATION, VELOCITY, panda
 
 KNOT_STEP = 0.01

@@ -6,9 +6,23 @@ from collections.abc import Sequence
 from typing import ClassVar
 
 from smash.planners.astar import BeamSearch, StateSearch, search_law_states
-from smash.planners.greedy import greedy_plans, passes
-from smash.planners.protocol import Method, MethodPlanner, Relay, Settings, SolveLog, left, not_plain, plain
+from smash.planners.greedy import greedy_method, greedy_plans
+from smash.planners.protocol import (
+    Method,
+    MethodPlanner,
+    OnIncumbent,
+    PlanResult,
+    Relay,
+    Settings,
+    SolveLog,
+    left,
+    not_plain,
+    plain,
+    plan_options,
+    settings_of,
+)
 from smash.problem.actions.registry import FAMILY
+from smash.problem.model import Instance, PlanOptions
 from smash.problem.problem import Problem
 
 GREEDY_SHARE = 0.1
@@ -50,6 +64,13 @@ class SmashPlanner(MethodPlanner):
     budget_dependent: ClassVar[bool] = True  # its parts get shares of the budget
     gentle: ClassVar[bool] = True
 
+    def solve(
+        self, instance: Instance, options: PlanOptions, budget: float, on_incumbent: OnIncumbent | None = None
+    ) -> PlanResult:
+        """Plan an instance, as every planner does; spelt out here, where readers of the package begin."""
+        problem = Problem(instance, plan_options(options))
+        return PlanResult.of(self.plan(problem, settings_of(options), budget, on_incumbent))
+
     def methods(self, problem: Problem, settings: Settings) -> Sequence[Method]:
         """Return the parts in their order, which depends on the size."""
         part = _Parts(settings)
@@ -65,7 +86,7 @@ class SmashPlanner(MethodPlanner):
             Method("search", plain, part.search, wide_share),
         )
         return (
-            passes(settings, GREEDY_SHARE),
+            greedy_method(settings, GREEDY_SHARE),
             Method("light search", plain, part.light_search, most=LIGHT_SECONDS),
             *(small if blocks <= SMALL_BLOCKS else large),
             Method("the law's states", not_plain, search_law_states, SEARCH_SHARE),
@@ -110,7 +131,6 @@ class _Parts:
     def _search_on(self, problem: Problem, log: SolveLog, until: float, *, may_compile: bool) -> None:
         numbered, cost = problem.numbered, _cost(log)
         if self._search is None:
-            log.prove(0, "start")
             self._search = StateSearch(numbered, problem.options, cost, on_bound=lambda b: log.prove(b, "astar"))
         search = self._search
         search.raise_bound(log.bound or 0, cost)

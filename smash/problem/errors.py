@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 
 class SmashError(Exception):
     """Base of all errors that end in one clear line on stderr and an exit code."""
@@ -22,6 +24,13 @@ class IllegalAction(SmashError):
     """An action that the law does not allow in the state at hand."""
 
     exit_code = 3
+
+
+class ExecutionFailure(SmashError):
+    """An action that the robot could not carry out; `failure` is its name in the records."""
+
+    exit_code = 5
+    failure: ClassVar[str] = "execution"
 
 
 class Unsupported(SmashError):

@@ -72,7 +72,12 @@ class Problem:
     @cached_property
     def twin(self) -> Problem:
         """The plain twin, whose plans are plans of this problem (`from_twin`); this problem where it is plain."""
-        return self if self.plain else Problem(plain_twin(self.instance), self.options)
+        if self.plain:
+            return self
+        twin = Problem(plain_twin(self.instance), self.options)
+        topple = tuple(kind for kind in self.kinds if kind.name == "topple")
+        vars(twin)["law"] = Law(twin.instance, twin.options, topple)  # known here: nobody has to be asked again
+        return twin
 
     def with_buffers(self, count: int) -> Problem:
         """Return the problem with `count` buffers.

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
+from smash.problem.actions.kind import AggregatingKind
 from smash.problem.actions.registry import kind_of, kinds_of
 from smash.problem.errors import IllegalAction
 from smash.problem.model import (
@@ -52,11 +54,23 @@ class Law:
         kinds: the kinds of aggregating actions that it may use, in the order of the registry.
     """
 
-    def __init__(self, instance: Instance, options: PlanOptions | None = None) -> None:
+    def __init__(
+        self,
+        instance: Instance,
+        options: PlanOptions | None = None,
+        kinds: tuple[AggregatingKind[Any], ...] | None = None,
+    ) -> None:
+        """Make the law.
+
+        Args:
+            instance: the instance.
+            options: what a plan may use; everything, where None.
+            kinds: the kinds of aggregating actions, where they are known already.
+        """
         self.instance = instance
         self.options = options or PlanOptions()
         self._room = {carrier.name: carrier.capacity for carrier in instance.carriers}
-        self.kinds = tuple(kinds_of(instance, self.options))
+        self.kinds = tuple(kinds_of(instance, self.options)) if kinds is None else kinds
         self._carries = any(kind.name == "carry" for kind in self.kinds)
 
     def refusal(self, state: State, action: Action) -> str | None:

@@ -14,7 +14,7 @@ from smash_baselines.steps import actions_of, steps_of
 from smash_baselines.task import compile_instance
 
 from smash.cli.export_pddl import command
-from smash.planners.protocol import SolveOptions, why_unsupported
+from smash.planners.protocol import Settings, SolveOptions, plan_options, why_unsupported
 from smash.problem import (
     TABLE,
     Carrier,
@@ -161,17 +161,19 @@ def test_engines_leave_what_the_goal_does_not_name_on_the_table_and_exports_do_n
 
 
 def test_planners_say_what_they_take():
-    assert why_unsupported(FdLama(), scoop(), SolveOptions()) is None
-    assert "chain" in why_unsupported(FdLamaConditional(), scoop(), SolveOptions())
-    assert why_unsupported(FdOpt().with_encoding("chain"), scoop(), SolveOptions()) is None
-    assert "carry" in why_unsupported(Aries(), scoop(), SolveOptions())
-    assert "costs are in ms" in why_unsupported(Aries(), scoop(capacities={}), SolveOptions(without=("carry",)))
+    assert why_unsupported(FdLama(), Problem(scoop(), PlanOptions()), Settings()) is None
+    assert "chain" in why_unsupported(FdLamaConditional(), Problem(scoop(), PlanOptions()), Settings())
+    assert why_unsupported(FdOpt().with_encoding("chain"), Problem(scoop(), PlanOptions()), Settings()) is None
+    assert "carry" in why_unsupported(Aries(), Problem(scoop(), PlanOptions()), Settings())
+    assert "costs are in ms" in why_unsupported(
+        Aries(), Problem(scoop(capacities={}), PlanOptions(without=("carry",))), Settings()
+    )
     assert {part.kind for part in PARTS} >= {"topple", "carry", "lift"}
 
 
 def assert_proven(planner, instance, options, budget=60.0):
     solve_options = SolveOptions(options.topple, options.max_topple, without=options.without)
-    assert why_unsupported(planner, instance, solve_options) is None
+    assert why_unsupported(planner, Problem(instance, plan_options(solve_options)), Settings()) is None
     try:
         best = cheapest_plan(instance, options, 30_000)
     except MemoryError:

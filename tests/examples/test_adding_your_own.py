@@ -169,3 +169,74 @@ def test_the_aggregating_actions_part_of_pddl_is_planned_with_at_the_same_cost(i
         assert (answer["status"], answer["actions"][0]) == ("optimal", ["pour", "tray"])
         costs.append(answer["cost"])
     assert costs[0] == costs[1]
+
+
+ON_THE_GADGET = """
+from smash.gadget.decode import decode
+from smash.gadget.encode import encode
+from smash.gadget.motion import motion_fault
+from smash.problem import Law, read_instance, read_plan
+
+instance = read_instance("far.json")
+plan = read_plan("plan.json")
+motion = encode(instance, plan.actions)
+assert motion_fault(motion) is None, motion_fault(motion)
+again = decode(motion, instance)
+assert Law(instance).check(again).accepted
+print(motion.cost, Law(instance).check(again).cost)
+"""
+
+
+def test_the_aggregating_actions_part_of_the_gadget_encodes_and_decodes_plans_with_it(installed, far, tmp_path):
+    assert run(["-m", "smash", "plan", far, "--out", "plan.json"], installed, tmp_path).returncode == 0
+    answer = run(["-c", ON_THE_GADGET], installed, tmp_path)
+    assert answer.returncode == 0, answer.stderr
+    cost = json.loads((tmp_path / "plan.json").read_text())["cost"]
+    assert answer.stdout.split() == [str(cost), str(cost)]
+    drawn = run(["-m", "smash", "draw", "gadget", far, "--no-topple", "--out", "gadget.png"], installed, tmp_path)
+    assert drawn.returncode == 0, drawn.stderr
+
+
+@pytest.mark.slow
+def test_the_papers_claim_holds_with_the_aggregating_action_too(installed):
+    """Random plans with it are motions, and random motions with it are plans, at their costs."""
+    ended = run(["-m", "pytest", "-p", "no:cacheprovider", "tests/gadget/test_claim.py"], installed, ROOT)
+    assert ended.returncode == 0, ended.stdout
+
+
+GROUPS = ("smash.aggregating", "smash.gadget_parts", "smash.pddl_parts", "smash.motions")
+REGISTRIES = """
+import smash.gadget.parts.registry
+import smash.problem.actions.registry
+import smash_baselines.parts.registry
+print("known", *smash.problem.actions.registry.FAMILY, *smash.gadget.parts.registry.PARTS)
+"""
+
+
+@pytest.mark.parametrize("group", GROUPS)
+@pytest.mark.parametrize(
+    ("module", "reason"),
+    [
+        ("raise RuntimeError('two\\nlines')", "two lines"),
+        ("Thing = int", "int is no "),
+        ("import nowhere_at_all", "nowhere_at_all"),
+        ("", "Thing"),
+    ],
+)
+def test_a_faulty_addition_is_named_in_one_line_and_left_out(group, module, reason, tmp_path):
+    code = REGISTRIES
+    if group == "smash.motions":
+        pytest.importorskip("ompl")
+        code += "import smash.execution.actions.registry"
+    info = tmp_path / "faulty-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: faulty\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text(f"[{group}]\nfaulty = faulty:Thing\n")
+    (tmp_path / "faulty.py").write_text(module)
+    path = os.pathsep.join([str(tmp_path), str(ROOT), str(ROOT / "baselines")])
+    ended = run(["-c", code], {**os.environ, "PYTHONPATH": path}, tmp_path)
+    assert ended.returncode == 0, ended.stderr
+    assert ended.stdout.split() == ["known", "topple", "carry", "lift", "topple", "carry", "lift"]
+    assert ended.stderr.startswith(f"smash: {group} 'faulty' of another package cannot be loaded: ")
+    assert reason in ended.stderr
+    assert ended.stderr.count("\n") == 1

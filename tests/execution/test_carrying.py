@@ -6,19 +6,20 @@ from math import acos, pi
 import numpy as np
 import pytest
 
-from smash.execution.actions.kind import Geometry
-from smash.execution.actions.pick_and_place import Move, Steps
+from smash.execution.actions.arm_motions import ArmMotions
 from smash.execution.actions.registry import MOTIONS
 from smash.execution.executor import Executor, observed_instance
 from smash.execution.grounding import Grounder
 from smash.execution.policy import OPEN
 from smash.execution.readback import NOWHERE, read_state
 from smash.execution.scene.block_pose import BlockPose, standing
+from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.scene.start import starting_carriers, starting_poses
 from smash.execution.scene.tabletop import DoesNotFit, Slot
 from smash.execution.scene.tray import Tray, heading
 from smash.motion.errors import NoIk
+from smash.motion.move import Move
 from smash.motion.robot import READY, panda
 from smash.problem import Carrier, Carry, Law, Pick, Place, PositionsGoal, State
 from smash.problem.actions.registry import FAMILY
@@ -41,7 +42,7 @@ def laid_out(instance, scene):
 
 def carried(scene, instance):
     where = laid_out(instance, scene)
-    return MOTIONS[Carry].plan(Steps(scene), READY, Carry("tray", "right"), State.start_of(instance), where)
+    return MOTIONS[Carry].plan(ArmMotions(scene), READY, Carry("tray", "right"), State.start_of(instance), where)
 
 
 @pytest.mark.parametrize("rows", [1, 2, 3])
@@ -90,10 +91,10 @@ def test_a_carried_tray_is_accelerated_less_than_friction_bears():
 def test_what_a_carry_leaves_is_known_before():
     scene, instance = scoop_scene(), loaded()
     where = laid_out(instance, scene)
-    steps = Steps(scene)
-    tasks = Grounder(steps).ground([Carry("tray", "right"), Pick("a", "tray")], State.start_of(instance), where, READY)
+    arm = ArmMotions(scene)
+    tasks = Grounder(arm).ground([Carry("tray", "right"), Pick("a", "tray")], Law(instance), where, READY)
     assert all(task.segments for task in tasks)
-    MOTIONS[Carry].foresee(steps, Carry("tray", "right"), State.start_of(instance), where)
+    MOTIONS[Carry].foresee(arm, Carry("tray", "right"), State.start_of(instance), where)
     state = read_state(where, scene)
     assert state.stations == {"tray": "right"}
     assert state.carried == {"tray": {"a", "c"}}

@@ -6,18 +6,20 @@ from math import acos
 import numpy as np
 import pytest
 
-from smash.execution.actions.kind import Geometry
-from smash.execution.actions.pick_and_place import Move, Steps
+from smash.execution.actions.arm_motions import ArmMotions
 from smash.execution.actions.registry import MOTIONS
 from smash.execution.executor import Executor
 from smash.execution.policy import OPEN
 from smash.execution.readback import read_state
+from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.scene.start import starting_poses
 from smash.execution.scene.tabletop import Slot
-from smash.motion.errors import ExecutionFailure, NoIk
+from smash.motion.errors import NoIk
+from smash.motion.move import Move
 from smash.motion.robot import READY, panda
 from smash.problem import Lift, Pick, Place, PositionsGoal, State, make_instance
+from smash.problem.errors import ExecutionFailure
 from tests.execution.episodes import plan_of
 
 
@@ -38,9 +40,9 @@ def lifted(instance, action, scene=None):
     scene = scene or default_scene()
     slots = scene.bind(instance)
     where = Geometry(slots, blocks=starting_poses(instance, slots, scene, np.random.default_rng(0)))
-    steps, state = Steps(scene), State.start_of(instance)
-    segments = MOTIONS[Lift].plan(steps, READY, action, state, where)
-    MOTIONS[Lift].foresee(steps, action, state, where)
+    arm, state = ArmMotions(scene), State.start_of(instance)
+    segments = MOTIONS[Lift].plan(arm, READY, action, state, where)
+    MOTIONS[Lift].foresee(arm, action, state, where)
     return segments, read_state(where, scene)
 
 

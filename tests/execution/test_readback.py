@@ -4,9 +4,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from smash.execution.actions.kind import Geometry
 from smash.execution.readback import read_state
 from smash.execution.scene.block_pose import BlockPose, quarter_turn, standing
+from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.scene_file import default_scene
 
 SIDE = 0.045

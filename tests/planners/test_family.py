@@ -7,8 +7,8 @@ from smash.planners.astar import AStarPlanner
 from smash.planners.greedy import GreedyPlanner
 from smash.planners.portfolio import SmashPlanner
 from smash.planners.precedence.planner import PrecedencePlanner
-from smash.planners.protocol import SolveOptions, why_unsupported
-from smash.problem import Costs, Law, State
+from smash.planners.protocol import Settings, SolveOptions, why_unsupported
+from smash.problem import Costs, Law, PlanOptions, State
 from smash.problem.problem import Problem
 from smash.problem.views.distances import Estimate
 from tests.cheapest import cheapest_plan
@@ -39,7 +39,7 @@ def test_the_estimate_is_no_more_than_what_a_cheapest_plan_still_costs(instance,
     best = cheapest_plan(instance, options)
     if best is None:
         return
-    law, estimate = Law(instance, options), Estimate(instance, options)
+    law, estimate = Law(instance, options), Estimate(Law(instance, options))
     state, left = State.start_of(instance), best[0]
     for action in best[1]:
         if state.hand is None:
@@ -57,14 +57,18 @@ def test_greedy_plans_are_legal_and_cost_what_they_say(instance, options):
 
 
 def test_a_planner_that_counts_actions_of_three_kinds_says_so():
-    left_out = SolveOptions(without=("carry", "lift"))
-    assert "does not plan with carry" in why_unsupported(PrecedencePlanner(), scoop(), SolveOptions())
-    assert "costs are in ms" in why_unsupported(PrecedencePlanner(), scoop(), left_out)
-    assert why_unsupported(PrecedencePlanner(), scoop(costs=Costs()), left_out) is None
+    def why(instance, options):
+        return why_unsupported(PrecedencePlanner(), Problem(instance, options), Settings())
+
+    left_out = PlanOptions(without=("carry", "lift"))
+    assert "does not plan with carry" in why(scoop(), PlanOptions())
+    assert "costs are in ms" in why(scoop(), left_out)
+    assert why(scoop(costs=Costs()), left_out) is None
     assert Problem(scoop(costs=Costs()), left_out).plain
 
 
 def test_smash_says_which_of_its_methods_are_exact():
     result = SmashPlanner().solve(scoop(), SolveOptions(), 10.0)
     assert result.status == "optimal"
-    assert result.details["exact_methods"] == ["search over states", "layered model"]
+    assert {"precedence", "search"} <= result.details["left_out"].keys()
+    assert {"greedy", "the law's states"} <= result.details["seconds"].keys()

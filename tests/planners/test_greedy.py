@@ -12,7 +12,7 @@ from smash.problem import PlanOptions
 from smash.problem.problem import Problem
 from smash.problem.sets.generators import generate
 from smash.problem.sets.suites import read_suite
-from smash.problem.views.numbered import Numbered, cost_of
+from smash.problem.views.numbered import cost_of
 from tests.oracle import optimal_cost
 from tests.strategies import instances, plan_options
 
@@ -68,11 +68,8 @@ def test_no_pass_is_begun_that_would_end_after_the_budget():
 
 
 def test_patient_passes_go_on_to_the_deadline_and_only_improve():
-    problem = Numbered.of(next(generate("multi", 20, 0, 1, 0)))
+    problem = Problem(next(generate("multi", 20, 0, 1, 0)), PlanOptions(topple=False))
     started = perf_counter()
-    costs = [
-        cost_of(steps)
-        for steps in greedy_steps(Problem(problem, PlanOptions(topple=False)), started + 0.3, patient=True)
-    ]
+    costs = [cost_of(steps) for steps in greedy_steps(problem, started + 0.3, patient=True)]
     assert 0.1 < perf_counter() - started < 0.8
     assert costs == sorted(set(costs), reverse=True)

@@ -120,9 +120,8 @@ def test_what_the_beam_found_and_proved_is_reported_at_once():
 
 
 def test_a_beam_that_left_nothing_out_proves_the_plan_under_its_own_name(monkeypatch):
-    monkeypatch.setattr("smash.planners.portfolio._Combined._search", lambda self, *_, **__: None)
-    monkeypatch.setattr("smash.planners.portfolio._Combined._precedence", lambda self: None)
-    monkeypatch.setattr("smash.planners.portfolio._Combined._layered", lambda self: None)
+    for method in ("light_search", "search", "precedence", "layered"):
+        monkeypatch.setattr(f"smash.planners.portfolio._Parts.{method}", lambda *_: None)
     instance = next(generate("multi", 6, 0, 1, 4))
     result = SmashPlanner().solve(instance, SolveOptions(topple=False), 20)
     assert (result.status, result.bound_origin) == ("optimal", "beam")

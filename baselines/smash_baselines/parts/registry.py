@@ -12,7 +12,14 @@ from smash_baselines.parts.topple import TopplePart
 
 GROUP = "smash.pddl_parts"
 
-PARTS: tuple[Part, ...] = (HandPart(), TopplePart(), CarryPart(), LiftPart(), *added(GROUP))
+BUILT_IN: tuple[Part, ...] = (TopplePart(), CarryPart(), LiftPart())
+
+PARTS: tuple[Part, ...] = (
+    HandPart(),
+    *{part.kind: part for part in (*BUILT_IN, *added(GROUP, Part), *BUILT_IN)}.values(),
+)
+"""The hand's part, then one for each action; the built-in ones come first and cannot be replaced."""
+
 TOLD = frozenset(part.kind for part in PARTS[1:])
 """The aggregating actions that can be told in PDDL."""
 

@@ -1,1 +1,1 @@
-"""How the arm carries out each action: pick and place, topple, carry, lift, and those that others add."""
+"""How the arm carries out each action: free motions, pick and place, topple, carry, lift, and those that others add."""

@@ -2,30 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import pi
 
 import numpy as np
 
-from smash.execution.actions.kind import AggregateMotion, Geometry
-from smash.execution.actions.level import Gentleness, level_way
-from smash.execution.actions.pick_and_place import (
+from smash.execution.actions.arm_motions import (
     CLOSE_SECONDS,
     OPEN_SECONDS,
     OPENINGS,
     RELEASE_HEIGHT,
+    ArmMotions,
     Grip,
     Segment,
-    Steps,
 )
+from smash.execution.actions.kind import AggregateMotion
 from smash.execution.scene.block_pose import BlockPose
+from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.tray import heading
 from smash.motion.collision import CONTACT_MARGIN
-from smash.motion.errors import ExecutionFailure, NoIk, NoMotion
+from smash.motion.errors import NoIk, NoMotion
 from smash.motion.kinematics import inverse
+from smash.motion.level import Gentleness, level_way
 from smash.motion.obstacles import Attached, BodyName, CarrierBody, HandState
 from smash.motion.poses import ToolPose, Vector, top_down
 from smash.motion.robot import panda
 from smash.problem.actions.carry import Carry
+from smash.problem.actions.registry import kind_of
+from smash.problem.errors import ExecutionFailure
 from smash.problem.model import State
 
 DESCENT = 0.08
@@ -38,35 +42,36 @@ class CarryMotion(AggregateMotion[Carry]):
 
     action = Carry
 
-    def plan(self, steps: Steps, start: Vector, action: Carry, state: State, where: Geometry) -> list[Segment]:
+    def plan(self, arm: ArmMotions, start: Vector, action: Carry, state: State, where: Geometry) -> list[Segment]:
         """Plan the way to the tray, the level way with it, and the way off.
 
         Raises:
             NoIk, NoMotion: where there is none; the message is about the first grasp that can be reached.
         """
-        from_pose, to_pose = where.carriers[action.carrier], self._target(steps, action, where)
+        from_pose, to_pose = where.carriers[action.carrier], self._target(arm, action, where)
         lift = np.array([0.0, 0.0, RELEASE_HEIGHT])
+        aboard = kind_of(action).gathered(state, action)
         problem: ExecutionFailure | None = None
         reached = False
         for turn in (0.0, pi):
-            grasp = top_down(steps.tray.grip(from_pose), heading(from_pose) + turn)
-            goal = top_down(steps.tray.grip(to_pose) + lift, heading(to_pose) + turn)
+            grasp = top_down(arm.tray.grip(from_pose), heading(from_pose) + turn)
+            goal = top_down(arm.tray.grip(to_pose) + lift, heading(to_pose) + turn)
             for joints in inverse(grasp, start, count=SOLUTIONS):
                 reached = True
                 try:
-                    return self._with_grasp(steps, start, joints, goal, action.carrier, state, where)
+                    return self._with_grasp(arm, start, joints, goal, action.carrier, aboard, where)
                 except ExecutionFailure as failure:
                     problem = problem or failure
         if not reached:
             raise NoIk(f"the hand cannot reach the post of carrier {action.carrier!r}")
         raise problem or NoMotion(f"no level way for carrier {action.carrier!r}")
 
-    def foresee(self, steps: Steps, action: Carry, state: State, where: Geometry) -> None:
+    def foresee(self, arm: ArmMotions, action: Carry, state: State, where: Geometry) -> None:
         """Move the tray to its station and what stands on it along."""
-        before, after = where.carriers[action.carrier], self._target(steps, action, where)
+        before, after = where.carriers[action.carrier], self._target(arm, action, where)
         where.carriers[action.carrier] = after
         turn = after.rotation @ before.rotation.T
-        for block in state.carried[action.carrier]:
+        for block in kind_of(action).gathered(state, action):
             pose = where.blocks[block]
             moved = after.position + turn @ (pose.position - before.position)
             where.blocks[block] = BlockPose(moved, turn @ pose.rotation)
@@ -80,35 +85,41 @@ class CarryMotion(AggregateMotion[Carry]):
         return where.carriers[action.carrier].position
 
     @staticmethod
-    def _target(steps: Steps, action: Carry, where: Geometry) -> BlockPose:
-        return steps.tabletop.tray_at(where.stations[action.station])
+    def _target(arm: ArmMotions, action: Carry, where: Geometry) -> BlockPose:
+        return arm.tabletop.tray_at(where.stations[action.station])
 
     @staticmethod
     def _with_grasp(
-        steps: Steps, start: Vector, joints: Vector, goal: ToolPose, carrier: str, state: State, where: Geometry
+        arm: ArmMotions,
+        start: Vector,
+        joints: Vector,
+        goal: ToolPose,
+        carrier: str,
+        aboard: Iterable[str],
+        where: Geometry,
     ) -> list[Segment]:
         """The motions with the hand closing at `joints` [rad].
 
         Raises:
             NoIk, NoMotion: where there are none.
         """
-        tray, aboard = steps.tray, state.carried[carrier]
+        tray = arm.tray
         moved: frozenset[BodyName] = frozenset([CarrierBody(carrier), *aboard])
-        scene = steps.scene(where.blocks, where.carriers)
+        scene = arm.scene(where.blocks, where.carriers)
         rest = scene.without(moved)
         opened = HandState(tray.post / 2 + OPENINGS[0])
-        down = steps.motion.line(joints, (0.0, 0.0, DESCENT), scene, hand=opened).reversed()
+        down = arm.planner.line(joints, (0.0, 0.0, DESCENT), scene, hand=opened).reversed()
         load = Attached.of_scene(scene.only_of(moved), panda().forward(joints))
         closed = HandState(tray.post / 2, load)
-        manner = Gentleness.of_friction(tray.friction, steps.tabletop.friction.block)
-        way = level_way(steps, joints, goal, rest, closed, moved, manner)
+        manner = Gentleness.of_friction(tray.friction, arm.tabletop.friction.block)
+        way = level_way(arm.planner, joints, goal, rest, closed, moved, manner)
         there = way[-1].path.end
-        off = steps.motion.line(there, (0.0, 0.0, DESCENT), rest, hand=opened)
+        off = arm.planner.line(there, (0.0, 0.0, DESCENT), rest, hand=opened)
         return [
-            *steps.transfer(start, down.start, scene, opened),
-            steps.move(down, opened, moved, CONTACT_MARGIN),
+            *arm.transfer(start, down.start, scene, opened),
+            arm.move(down, opened, moved, CONTACT_MARGIN),
             Grip(0.0, CLOSE_SECONDS),
             *way,
             Grip(opened.opening, OPEN_SECONDS),
-            steps.move(off, opened, moved, CONTACT_MARGIN),
+            arm.move(off, opened, moved, CONTACT_MARGIN),
         ]

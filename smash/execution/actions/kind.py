@@ -7,46 +7,14 @@ Each kind lives in one small file and is listed in the `registry` beside it, as 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
-from smash.execution.actions.pick_and_place import Segment, Steps
-from smash.execution.scene.block_pose import BlockPose
-from smash.execution.scene.tabletop import Slot
+from smash.execution.actions.arm_motions import ArmMotions, Segment
+from smash.execution.scene.geometry import Geometry
 from smash.motion.poses import Vector
 from smash.problem.model import Aggregating, State
 
 A = TypeVar("A", bound=Aggregating)
-
-
-@dataclass
-class Geometry:
-    """Where things are: what the law's state means on the table.
-
-    Attributes:
-        slots: The slot of every location.
-        stations: The slot of every station.
-        blocks: Poses of the blocks, as far as they are known.
-        carriers: Poses of the carriers.
-    """
-
-    slots: Mapping[str, Slot]
-    stations: Mapping[str, Slot] = field(default_factory=dict)
-    blocks: dict[str, BlockPose] = field(default_factory=dict)
-    carriers: dict[str, BlockPose] = field(default_factory=dict)
-
-    def seen(self, blocks: Mapping[str, BlockPose], carriers: Mapping[str, BlockPose]) -> Geometry:
-        """The same table with these poses."""
-        return Geometry(self.slots, self.stations, dict(blocks), dict(carriers))
-
-    def point(self, place: str) -> tuple[float, float]:
-        """World x, y of a location, a carrier or a station [m]."""
-        if place in self.carriers:
-            x, y = self.carriers[place].position[:2]
-            return float(x), float(y)
-        slot = self.slots.get(place) or self.stations[place]
-        return slot.x, slot.y
 
 
 class AggregateMotion(ABC, Generic[A]):
@@ -59,11 +27,11 @@ class AggregateMotion(ABC, Generic[A]):
     action: type[A]
 
     @abstractmethod
-    def plan(self, steps: Steps, start: Vector, action: A, state: State, where: Geometry) -> list[Segment]:
+    def plan(self, arm: ArmMotions, start: Vector, action: A, state: State, where: Geometry) -> list[Segment]:
         """Plan the motions of a legal action.
 
         Args:
-            steps: Plans motions.
+            arm: Plans motions.
             start: Where the arm is [rad], shape (7,).
             action: The action.
             state: The law's state before it.
@@ -74,7 +42,7 @@ class AggregateMotion(ABC, Generic[A]):
         """
 
     @abstractmethod
-    def foresee(self, steps: Steps, action: A, state: State, where: Geometry) -> None:
+    def foresee(self, arm: ArmMotions, action: A, state: State, where: Geometry) -> None:
         """Change `where` as the action will; poses that nobody can foresee are taken out."""
 
     @abstractmethod

@@ -12,27 +12,30 @@ from math import atan2, cos, pi, radians, sin
 
 import numpy as np
 
-from smash.execution.actions.kind import AggregateMotion, Geometry
-from smash.execution.actions.level import FIRST_JOINT, Gentleness, level_way
-from smash.execution.actions.pick_and_place import (
+from smash.execution.actions.arm_motions import (
     CLOSE_SECONDS,
     ENOUGH_CLEARANCE,
     OPEN_SECONDS,
     OPENINGS,
     RELEASE_HEIGHT,
+    ArmMotions,
     Grip,
-    Move,
     Segment,
-    Steps,
 )
+from smash.execution.actions.kind import AggregateMotion
 from smash.execution.scene.block_pose import QUARTER, BlockPose, standing
+from smash.execution.scene.geometry import Geometry
 from smash.motion.collision import CONTACT_MARGIN, CollisionChecker
-from smash.motion.errors import ExecutionFailure, NoIk, NoMotion
+from smash.motion.errors import NoIk, NoMotion
 from smash.motion.kinematics import descend, inverse
+from smash.motion.level import FIRST_JOINT, Gentleness, level_way
+from smash.motion.move import Move
 from smash.motion.obstacles import Attached, BodyName, HandState, Scene
 from smash.motion.poses import Matrix, ToolPose, Vector, yaw_rotation
 from smash.motion.robot import panda
 from smash.problem.actions.lift import Lift
+from smash.problem.actions.registry import kind_of
+from smash.problem.errors import ExecutionFailure
 from smash.problem.model import State
 
 TILTS = (0.0, radians(20.0), radians(30.0))
@@ -70,29 +73,29 @@ class LiftMotion(AggregateMotion[Lift]):
 
     action = Lift
 
-    def plan(self, steps: Steps, start: Vector, action: Lift, state: State, where: Geometry) -> list[Segment]:
+    def plan(self, arm: ArmMotions, start: Vector, action: Lift, state: State, where: Geometry) -> list[Segment]:
         """Plan the way to the pile, the level way with its upper part, and the way off.
 
         Raises:
             NoIk, NoMotion: where there is none; the message is about the grasp with most room.
         """
-        lifted = state.piles[action.source][action.height - 1 :]
-        scene = steps.scene(where.blocks, where.carriers)
-        target = _target(steps, action, state, where)
+        lifted = _lifted(action, state)
+        scene = arm.scene(where.blocks, where.carriers)
+        target = _target(arm, action, state, where)
         problem: ExecutionFailure | None = None
-        for grasp in _grasps(steps, start, lifted, where.blocks[lifted[0]], target, scene)[:MOST_GRASPS]:
+        for grasp in _grasps(arm, start, lifted, where.blocks[lifted[0]], target, scene)[:MOST_GRASPS]:
             try:
-                return _with_grasp(steps, start, grasp, lifted, scene)
+                return _with_grasp(arm, start, grasp, lifted, scene)
             except ExecutionFailure as failure:
                 problem = problem or failure
         assert problem is not None
         raise problem
 
-    def foresee(self, steps: Steps, action: Lift, state: State, where: Geometry) -> None:
+    def foresee(self, arm: ArmMotions, action: Lift, state: State, where: Geometry) -> None:
         """Move the blocks to the other pile."""
-        lowest = _target(steps, action, state, where)
-        for level, block in enumerate(state.piles[action.source][action.height - 1 :]):
-            where.blocks[block] = BlockPose(lowest.position + np.array([0.0, 0.0, level * steps.side]), lowest.rotation)
+        lowest = _target(arm, action, state, where)
+        for level, block in enumerate(_lifted(action, state)):
+            where.blocks[block] = BlockPose(lowest.position + np.array([0.0, 0.0, level * arm.side]), lowest.rotation)
 
     def places(self, action: Lift) -> tuple[str, ...]:
         """Return both locations."""
@@ -100,14 +103,19 @@ class LiftMotion(AggregateMotion[Lift]):
 
     def anchor(self, action: Lift, state: State, where: Geometry) -> Vector | None:
         """The block that is grasped, where its pose is known."""
-        pose = where.blocks.get(state.piles[action.source][action.height - 1])
+        pose = where.blocks.get(_lifted(action, state)[0])
         return None if pose is None else pose.position
 
 
-def _target(steps: Steps, action: Lift, state: State, where: Geometry) -> BlockPose:
+def _lifted(action: Lift, state: State) -> list[str]:
+    """What the law lifts, the lowest block first."""
+    return list(reversed(kind_of(action).gathered(state, action)))
+
+
+def _target(arm: ArmMotions, action: Lift, state: State, where: Geometry) -> BlockPose:
     """Where the lowest lifted block shall stand."""
     slot = where.slots[action.target]
-    return standing(slot.x, slot.y, (len(state.piles[action.target]) + 0.5) * steps.side, slot.angle)
+    return standing(slot.x, slot.y, (len(state.piles[action.target]) + 0.5) * arm.side, slot.angle)
 
 
 def _hand_rotation(azimuth: float, tilt: float, side: float) -> Matrix:
@@ -118,7 +126,7 @@ def _hand_rotation(azimuth: float, tilt: float, side: float) -> Matrix:
 
 
 def _grasps(
-    steps: Steps, start: Vector, lifted: list[str], pose: BlockPose, target: BlockPose, scene: Scene
+    arm: ArmMotions, start: Vector, lifted: list[str], pose: BlockPose, target: BlockPose, scene: Scene
 ) -> list[_Grasp]:
     """Ways to hold the lowest lifted block, those with most room at both ends first, then those near `start`.
 
@@ -126,7 +134,7 @@ def _grasps(
         NoIk: where the arm reaches it from no side.
         NoMotion: where the hand has no room at one of the ends.
     """
-    opened = HandState(steps.side / 2 + OPENINGS[0])
+    opened = HandState(arm.side / 2 + OPENINGS[0])
     here = CollisionChecker(scene.without(lifted[:1]), opened, 0.0)
     there = CollisionChecker(scene.without(lifted), opened, 0.0)
     found: list[_Grasp] = []
@@ -171,28 +179,30 @@ def _goals(tool: ToolPose, block: BlockPose, target: BlockPose) -> Iterator[tupl
             yield ToolPose(target.position + rise + offset, rotation @ tool.rotation), wanted - bearing + beside
 
 
-def _with_grasp(steps: Steps, start: Vector, grasp: _Grasp, lifted: list[str], scene: Scene) -> list[Segment]:
+def _with_grasp(arm: ArmMotions, start: Vector, grasp: _Grasp, lifted: list[str], scene: Scene) -> list[Segment]:
     """The motions with one grasp.
 
     Raises:
         NoIk, NoMotion: where there are none.
     """
     moved: frozenset[BodyName] = frozenset(lifted)
-    rest, opened = scene.without(moved), HandState(steps.side / 2 + OPENINGS[0])
+    rest, opened = scene.without(moved), HandState(arm.side / 2 + OPENINGS[0])
     joints, goal = grasp.joints, grasp.goal
     tool = panda().forward(joints)
     back = -RUN_UP * tool.rotation[:, 2]
-    way_in = steps.motion.line(joints, back, scene.without(lifted[:1]), hand=opened).reversed()
-    held = HandState(steps.side / 2, Attached.of_scene(scene.only_of(moved), tool))
-    friction = steps.tabletop.friction.block
-    way: list[Move] = level_way(steps, joints, goal, rest, held, moved, Gentleness.of_friction(friction, friction))
+    way_in = arm.planner.line(joints, back, scene.without(lifted[:1]), hand=opened).reversed()
+    held = HandState(arm.side / 2, Attached.of_scene(scene.only_of(moved), tool))
+    friction = arm.tabletop.friction.block
+    way: list[Move] = level_way(
+        arm.planner, joints, goal, rest, held, moved, Gentleness.of_friction(friction, friction)
+    )
     there = way[-1].path.end
-    way_off = steps.motion.line(there, -RUN_UP * goal.rotation[:, 2], rest, hand=opened)
+    way_off = arm.planner.line(there, -RUN_UP * goal.rotation[:, 2], rest, hand=opened)
     return [
-        *steps.transfer(start, way_in.start, scene, opened),
-        steps.move(way_in, opened, moved, CONTACT_MARGIN),
+        *arm.transfer(start, way_in.start, scene, opened),
+        arm.move(way_in, opened, moved, CONTACT_MARGIN),
         Grip(0.0, CLOSE_SECONDS),
         *way,
         Grip(opened.opening, OPEN_SECONDS),
-        steps.move(way_off, opened, moved, CONTACT_MARGIN),
+        arm.move(way_off, opened, moved, CONTACT_MARGIN),
     ]

@@ -1,7 +1,4 @@
-"""How the arm carries out aggregating actions: one line for each built-in one, as in `smash.problem.actions.registry`.
-
-Other packages add motions by the entry-point group `smash.motions`, as they add the law of their actions.
-"""
+"""The motions of aggregating actions that there are: three built in, more by the entry-point group `smash.motions`."""
 
 from __future__ import annotations
 
@@ -17,6 +14,6 @@ from smash.problem.model import Aggregating
 GROUP = "smash.motions"
 
 MOTIONS: dict[type[Aggregating], AggregateMotion[Any]] = {
-    motion.action: motion for motion in (*added(GROUP), ToppleMotion(), CarryMotion(), LiftMotion())
+    motion.action: motion for motion in (*added(GROUP, AggregateMotion), ToppleMotion(), CarryMotion(), LiftMotion())
 }
 """Motions by the class of the action; the built-in ones cannot be replaced."""

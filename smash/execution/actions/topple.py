@@ -14,18 +14,21 @@ from math import ceil, cos, sin
 
 import numpy as np
 
-from smash.execution.actions.kind import AggregateMotion, Geometry
-from smash.execution.actions.pick_and_place import Segment, Steps
+from smash.execution.actions.arm_motions import ArmMotions, Segment
+from smash.execution.actions.kind import AggregateMotion
 from smash.execution.scene.block_pose import BlockPose
+from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.tabletop import Slot
 from smash.motion.collision import FINGER_CORNERS, HAND_CORNERS, HAND_TO_TOOL
-from smash.motion.errors import ExecutionFailure, NoIk, NoMotion
+from smash.motion.errors import NoIk, NoMotion
 from smash.motion.kinematics import inverse
 from smash.motion.obstacles import HandState, Scene
 from smash.motion.poses import Vector, top_down
 from smash.motion.robot import FINGERTIP_BEYOND_TOOL
 from smash.motion.timing import Pace
+from smash.problem.actions.registry import kind_of
 from smash.problem.actions.topple import Topple
+from smash.problem.errors import ExecutionFailure
 from smash.problem.model import State
 
 RUN_UP = 0.10
@@ -130,7 +133,7 @@ def directions(slot: Slot, falling: int, others: Iterable[BlockPose], side: floa
 
 
 def topple(
-    steps: Steps,
+    arm: ArmMotions,
     start: Vector,
     slot: Slot,
     pile: tuple[str, ...],
@@ -144,7 +147,7 @@ def topple(
     The push takes what lies above `height`, or the upper part of it where that is too much for one push (`first_cut`).
 
     Args:
-        steps: Plans motions.
+        arm: Plans motions.
         start: Where the arm is [rad], shape (7,).
         slot: Where the pile stands.
         pile: Its blocks, bottom first.
@@ -159,12 +162,12 @@ def topple(
     cut = first_cut(height, len(pile))
     falling = pile[cut - 1 :]
     others = [pose for name, pose in poses.items() if name not in pile] + list((carriers or {}).values())
-    scene = steps.scene(poses, carriers)
-    preferred = directions(slot, len(falling), others, steps.side)
+    scene = arm.scene(poses, carriers)
+    preferred = directions(slot, len(falling), others, arm.side)
     problem: ExecutionFailure | None = None
     for shoved, direction in product(dict.fromkeys((frozenset[str](), loose)), preferred):
         try:
-            return _push(steps, start, slot, direction, falling, cut, scene, shoved)
+            return _push(arm, start, slot, direction, falling, cut, scene, shoved)
         except ExecutionFailure as failure:
             problem = problem or failure
     raise problem or NoIk("the stack has no topple direction")
@@ -175,7 +178,7 @@ class ToppleMotion(AggregateMotion[Topple]):
 
     action = Topple
 
-    def plan(self, steps: Steps, start: Vector, action: Topple, state: State, where: Geometry) -> list[Segment]:
+    def plan(self, arm: ArmMotions, start: Vector, action: Topple, state: State, where: Geometry) -> list[Segment]:
         """Plan the push.
 
         Raises:
@@ -183,11 +186,11 @@ class ToppleMotion(AggregateMotion[Topple]):
         """
         pile, slot = tuple(state.piles[action.location]), where.slots[action.location]
         loose = frozenset(state.table).intersection(where.blocks)
-        return topple(steps, start, slot, pile, action.height, where.blocks, where.carriers, loose)
+        return topple(arm, start, slot, pile, action.height, where.blocks, where.carriers, loose)
 
-    def foresee(self, steps: Steps, action: Topple, state: State, where: Geometry) -> None:
+    def foresee(self, arm: ArmMotions, action: Topple, state: State, where: Geometry) -> None:
         """Forget the poses of what falls."""
-        for block in state.piles[action.location][action.height - 1 :]:
+        for block in kind_of(action).gathered(state, action):
             where.blocks.pop(block, None)
 
     def motions(self, action: Topple, state: State) -> int:
@@ -196,7 +199,7 @@ class ToppleMotion(AggregateMotion[Topple]):
 
     def unfinished(self, action: Topple, state: State) -> bool:
         """Whether blocks still stand above the cut."""
-        return len(state.piles[action.location]) >= action.height
+        return bool(kind_of(action).gathered(state, action))
 
     def places(self, action: Topple) -> tuple[str, ...]:
         """Return the pile's location."""
@@ -204,7 +207,7 @@ class ToppleMotion(AggregateMotion[Topple]):
 
 
 def _push(
-    steps: Steps,
+    arm: ArmMotions,
     start: Vector,
     slot: Slot,
     direction: str,
@@ -215,10 +218,10 @@ def _push(
 ) -> list[Segment]:
     heading = slot.heading(direction)
     along = np.array([cos(heading), sin(heading), 0.0])
-    reach = _first_contact(len(falling), steps.side)
-    base = np.array([slot.x, slot.y, (height - 1 + ABOVE_CUT) * steps.side + FINGERTIP_BEYOND_TOOL])
+    reach = _first_contact(len(falling), arm.side)
+    base = np.array([slot.x, slot.y, (height - 1 + ABOVE_CUT) * arm.side + FINGERTIP_BEYOND_TOOL])
     how = manner(height, len(falling))
-    length = RUN_UP + how.follow_through * steps.side
+    length = RUN_UP + how.follow_through * arm.side
     closed, fallen = HandState(0.0), shoved.union(falling)
     pushed = scene.without(fallen)
     problem: ExecutionFailure | None = None
@@ -226,21 +229,21 @@ def _push(
         pose = top_down(base - (reach + RUN_UP) * along, yaw)
         for joints in inverse(pose, start, count=PUSH_SOLUTIONS):
             try:
-                push = steps.motion.line(joints, length * along, pushed, hand=closed, margin=PUSH_MARGIN)
-                way, away = _way_in(steps, start, joints, scene)
+                push = arm.planner.line(joints, length * along, pushed, hand=closed, margin=PUSH_MARGIN)
+                way, away = _way_in(arm, start, joints, scene)
             except ExecutionFailure as failure:
                 problem = problem or failure
                 continue
             return [
                 *way,
-                steps.move(push, closed, fallen, PUSH_MARGIN, Pace(tool_speed=how.speed)),
-                steps.move(push.reversed(), closed, fallen, PUSH_MARGIN),
+                arm.move(push, closed, fallen, PUSH_MARGIN, Pace(tool_speed=how.speed)),
+                arm.move(push.reversed(), closed, fallen, PUSH_MARGIN),
                 *away,
             ]
     raise problem or NoIk(f"the hand cannot reach the start of a {direction} push at height {height}")
 
 
-def _way_in(steps: Steps, start: Vector, joints: Vector, scene: Scene) -> tuple[list[Segment], list[Segment]]:
+def _way_in(arm: ArmMotions, start: Vector, joints: Vector, scene: Scene) -> tuple[list[Segment], list[Segment]]:
     """From `start` to before the pile and away from there: directly, or from above where the table is close.
 
     Raises:
@@ -248,12 +251,12 @@ def _way_in(steps: Steps, start: Vector, joints: Vector, scene: Scene) -> tuple[
     """
     closed = HandState(0.0)
     try:
-        return [*steps.transfer(start, joints, scene, closed)], []
+        return [*arm.transfer(start, joints, scene, closed)], []
     except NoMotion:
-        down = steps.motion.line(joints, (0.0, 0.0, LEAD), scene, hand=closed, margin=PUSH_MARGIN).reversed()
-        above = steps.transfer(start, down.start, scene, closed)
-        return [*above, steps.move(down, closed, margin=PUSH_MARGIN)], [
-            steps.move(down.reversed(), closed, margin=PUSH_MARGIN)
+        down = arm.planner.line(joints, (0.0, 0.0, LEAD), scene, hand=closed, margin=PUSH_MARGIN).reversed()
+        above = arm.transfer(start, down.start, scene, closed)
+        return [*above, arm.move(down, closed, margin=PUSH_MARGIN)], [
+            arm.move(down.reversed(), closed, margin=PUSH_MARGIN)
         ]
 
 

@@ -16,7 +16,7 @@ from math import pi
 
 import numpy as np
 
-from smash.execution.actions.pick_and_place import OPENINGS
+from smash.execution.actions.arm_motions import OPENINGS
 from smash.execution.actions.topple import strip
 from smash.execution.scene.block_pose import QUARTER, standing
 from smash.execution.scene.tabletop import Slot, Tabletop

@@ -1,1 +1,1 @@
-"""The table: where stacks and buffers stand, what stands on them, the file that says so."""
+"""The table: where stacks and buffers stand, what stands on them and where, the file that says so."""

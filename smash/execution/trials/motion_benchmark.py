@@ -16,23 +16,24 @@ from typing import Any
 
 import numpy as np
 
-from smash.execution.actions.kind import Geometry
-from smash.execution.actions.pick_and_place import Move, Segment, Steps
+from smash.execution.actions.arm_motions import ArmMotions, Segment
 from smash.execution.actions.topple import topple
-from smash.execution.scene.block_pose import standing
+from smash.execution.grounding import Grounder
+from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.scene.start import starting_poses
 from smash.motion.collision import CollisionChecker
-from smash.motion.errors import ExecutionFailure
 from smash.motion.hulls import HullChecker
 from smash.motion.kinematics import inverse
-from smash.motion.motions import MotionPlanner
+from smash.motion.move import Move
 from smash.motion.obstacles import Scene
 from smash.motion.paths import Path
+from smash.motion.planner import MotionPlanner
 from smash.motion.poses import top_down
 from smash.motion.robot import LOWER, READY, UPPER
+from smash.problem.errors import ExecutionFailure
 from smash.problem.files.instances import make_instance
-from smash.problem.model import Instance, PositionsGoal
+from smash.problem.model import Instance, PositionsGoal, State
 
 TOUCH = 0.003
 """Hulls may enter a box by this much where a motion ends in contact [m]."""
@@ -109,35 +110,35 @@ def random_table(generator: np.random.Generator, blocks: int) -> tuple[Instance,
 def run(tables: int, blocks: int, seed: int) -> Tally:
     """Plan a pick, a place and a topple on each of so many random tables."""
     tally = Tally()
-    steps = Steps(default_scene(), seed)
-    steps.motion = TimedPlanner(tally, seed)
+    arm = ArmMotions(default_scene(), seed)
+    arm.planner = TimedPlanner(tally, seed)
     for number in range(tables):
         generator = np.random.default_rng([seed, number])
         instance, where = random_table(generator, blocks)
         for action in (_pick_and_place, _topple):
             try:
-                action(steps, instance, where, generator, tally)
+                action(arm, instance, where, generator, tally)
             except ExecutionFailure as failure:
                 tally.failures[failure.failure] += 1
     return tally
 
 
 def _pick_and_place(
-    steps: Steps, instance: Instance, where: Geometry, generator: np.random.Generator, tally: Tally
+    arm: ArmMotions, instance: Instance, where: Geometry, generator: np.random.Generator, tally: Tally
 ) -> None:
     piles = {location: pile for location, pile in instance.start.items() if pile}
     block = str(generator.choice([*instance.table, *(pile[-1] for pile in piles.values())]))
     target = str(generator.choice([q for q in instance.locations if not instance.start[q] or piles[q][-1] != block]))
-    scene = steps.scene(where.blocks)
+    grounder, scene = Grounder(arm), arm.scene(where.blocks)
     begun = process_time()
-    lifted = _count("pick", begun, steps.pick(READY, block, where.blocks[block], scene), scene, tally)
-    slot, height = where.slots[target], (len(instance.start[target]) + 0.5) * steps.side
+    lifted = _count("pick", begun, grounder.pick_and_place.pick(READY, block, where.blocks[block], scene), scene, tally)
+    stand = grounder.stand(target, State.start_of(instance), where)
     begun = process_time()
-    way = steps.landing(lifted, block, standing(slot.x, slot.y, height, slot.angle), scene)
-    _count("place", begun, steps.place(lifted, block, way, scene), scene, tally)
+    way = grounder.pick_and_place.landing(lifted, block, stand, scene)
+    _count("place", begun, grounder.pick_and_place.place(lifted, block, way, scene), scene, tally)
 
 
-def _topple(steps: Steps, instance: Instance, where: Geometry, generator: np.random.Generator, tally: Tally) -> None:
+def _topple(arm: ArmMotions, instance: Instance, where: Geometry, generator: np.random.Generator, tally: Tally) -> None:
     stacks = [location for location in instance.stacks if instance.start[location]]
     if not stacks:
         return
@@ -145,8 +146,8 @@ def _topple(steps: Steps, instance: Instance, where: Geometry, generator: np.ran
     pile = instance.start[location]
     height = int(generator.integers(1, len(pile) + 1))
     begun = process_time()
-    segments = topple(steps, READY, where.slots[location], pile, height, where.blocks, None, frozenset(instance.table))
-    _count("topple", begun, segments, steps.scene(where.blocks), tally)
+    segments = topple(arm, READY, where.slots[location], pile, height, where.blocks, None, frozenset(instance.table))
+    _count("topple", begun, segments, arm.scene(where.blocks), tally)
 
 
 def _count(what: str, begun: float, segments: Sequence[Segment], scene: Scene, tally: Tally) -> Any:
@@ -169,9 +170,9 @@ def touching(tally: Tally, step: float = 0.01) -> int:
 def compare_checkers(states: int, seed: int) -> Counter[tuple[bool, bool]]:
     """(free by the spheres, free by the hulls) of random configurations on a random table, a block in the hand."""
     generator = np.random.default_rng(seed)
-    steps = Steps(default_scene())
-    scene = steps.scene(random_table(generator, 9)[1].blocks)
-    fast, exact = CollisionChecker(scene, steps.holding, 0.0), HullChecker(scene, steps.holding, 0.0)
+    arm = ArmMotions(default_scene())
+    scene = arm.scene(random_table(generator, 9)[1].blocks)
+    fast, exact = CollisionChecker(scene, arm.holding, 0.0), HullChecker(scene, arm.holding, 0.0)
     verdicts: Counter[tuple[bool, bool]] = Counter()
     for joints in generator.uniform(LOWER, UPPER, (states, 7)):
         verdicts[fast.free(joints), exact.contact(joints) is None] += 1

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import msgspec
 import numpy as np
 
-from smash.execution.actions.kind import Geometry
-from smash.execution.actions.pick_and_place import Steps
+from smash.execution.actions.arm_motions import ArmMotions
+from smash.execution.actions.pick_and_place import PickAndPlace
 from smash.execution.actions.topple import strip
 from smash.execution.episode import Performed
 from smash.execution.grounding import Grounder, Task
@@ -23,14 +22,17 @@ from smash.execution.physics.world import World
 from smash.execution.policy import OPEN
 from smash.execution.readback import read_state
 from smash.execution.scene.block_pose import BlockPose
+from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.start import starting_poses
-from smash.execution.scene.tabletop import Tabletop
+from smash.execution.scene.tabletop import Slot, Tabletop
 from smash.execution.trials.estimates import Estimates, Rate
-from smash.motion.errors import ExecutionFailure
+from smash.motion.poses import Vector
 from smash.motion.robot import READY
 from smash.problem.actions.topple import Topple
+from smash.problem.errors import ExecutionFailure
 from smash.problem.files.instances import make_instance
 from smash.problem.model import PositionsGoal
+from smash.problem.rules import Law
 
 TRIAL_FORMAT = "smash-topple-trial/1"
 
@@ -95,7 +97,7 @@ def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: i
     )
     slots = {location: slot}
     poses = starting_poses(instance, slots, tabletop, np.random.default_rng(seed))
-    steps = Steps(tabletop, seed)
+    arm = ArmMotions(tabletop, seed)
     action = Topple(location, height)
     blank = Trial(
         scene=tabletop.name, layout=tabletop.fingerprint, stack=stack, height=height, falling=falling, seed=seed
@@ -103,31 +105,33 @@ def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: i
     with World(tabletop, poses, READY) as world:
         world.settle()
         before = world.poses()
-        performer = Performer(world, Grounder(steps), Geometry(slots), OPEN)
+        performer = Performer(world, Grounder(arm), Geometry(slots), OPEN)
         try:
             performer.perform(Task(action, None), Performed(step=1, action=[], origin="plan"), performer.observe())
         except ExecutionFailure as failure:
             return msgspec.structs.replace(blank, problem=str(failure))
-        after, arm = world.poses(), world.commanded()
-    lower = names[: height - 1]
+        after, joints = world.poses(), world.commanded()
+    *_, expected = Law(instance).states([action])
+    lower = expected.piles[location]
     return msgspec.structs.replace(
         blank,
         moved=max((float(np.linalg.norm(after[b].position - before[b].position)) for b in lower), default=0.0),
         stands=read_state(Geometry(slots, blocks=after), tabletop).piles[location] == lower,
         landings=tuple(
-            _landing(steps, tabletop, stack, names.index(b) + 1, b, after, arm) for b in names[height - 1 :]
+            _landing(arm, slot, level, block, after, joints)
+            for level, block in enumerate(names, start=1)
+            if block in expected.table
         ),
     )
 
 
 def _landing(
-    steps: Steps, tabletop: Tabletop, stack: int, level: int, block: str, poses: Mapping[str, BlockPose], arm: Any
+    arm: ArmMotions, slot: Slot, level: int, block: str, poses: Mapping[str, BlockPose], joints: Vector
 ) -> Landing:
-    slot = tabletop.stacks[stack]
     position = poses[block].position
     along, aside = slot.coordinates(float(position[0]), float(position[1]), slot.directions[0])
     try:
-        steps.pick(arm, block, poses[block], steps.scene(poses))
+        PickAndPlace(arm).pick(joints, block, poses[block], arm.scene(poses))
         graspable = True
     except ExecutionFailure:
         graspable = False

@@ -78,6 +78,8 @@ def goal_in_words(goal: Goal) -> str:
             piles, rest = goal.stacks(), "bottom first, other blocks anywhere"
         case StacksGoal():
             piles, rest = {name: pile for name, pile in goal.stacks.items() if pile}, "bottom first"
+        case _:
+            raise TypeError(f"{goal!r} is no goal")
     named = "; ".join(f"{location} = {' '.join(pile)}" for location, pile in piles.items())
     return f"{named} ({rest})" if named else "nothing"
 

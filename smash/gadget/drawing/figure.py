@@ -301,6 +301,12 @@ def _further_rows(gadget: Gadget) -> list[tuple[str, str, str]]:
     if moved:
         text = f"{len(moved)} {moved[0].part} edges: the carrier with all on it, {_cost([a.cost for a in moved])}"
         rows.append(("thick", BLUE, text))
+    emptied = [
+        each for each in gadget.aggregates if each.gather is not None and each.locks is None and each.token is None
+    ]
+    if emptied:
+        text = f"{len(emptied)} {emptied[0].part} edges (not drawn): all that lies in $(C, p)$, without $C$, "
+        rows.append(("thick", PINK, text + _cost([each.cost for each in emptied])))
     lifted = [aggregate for aggregate in gadget.aggregates if aggregate.in_place]
     if lifted:
         text = (

@@ -74,6 +74,8 @@ def goal_piles(instance: Instance) -> tuple[dict[str, tuple[str, ...]], tuple[st
             for number, tower in enumerate(goal.towers()):
                 piles[f"{'floor' if tower[0] in grounded else 'any'} {number}"] = tower
             return piles, tuple(piles), " (at any location, on its floor or on anything)"
+        case _:
+            raise TypeError(f"{instance.goal!r} is no goal")
 
 
 def paint_piles(

@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 from itertools import permutations
+from typing import ClassVar, Self
 
-from smash.gadget.builder import GadgetBuilder
+from smash.gadget.builder import AggregatingPart, GadgetBuilder
 from smash.gadget.elements import Aggregate, EdgeKind, NodeKind, Token
 from smash.problem.actions.carry import Carry, CarryKind
 from smash.problem.actions.kind import allowed
 from smash.problem.model import Aggregating, Carrier, Instance, PlanOptions, State
 
-NAME = CarryKind.name
-
 
 @dataclass(frozen=True, slots=True)
-class CarryPart:
+class CarryPart(AggregatingPart):
     """The nodes (C, p) of carrier C at station p, joined to all tops by pick and place, and the edges between them.
 
     The carrier is a token: blocks are in (C, p) only while it stands there, and take ((C, p), (C, q)) together with
@@ -27,18 +26,17 @@ class CarryPart:
         moves: whether they can be carried; else blocks are only picked off them.
     """
 
+    name: ClassVar[str] = CarryKind.name
     carriers: tuple[Carrier, ...]
     moves: bool = True
 
-    @property
-    def name(self) -> str:
-        """The action's name."""
-        return NAME
-
-    @property
-    def stacks_several(self) -> bool:
-        """Blocks on a carrier lie side by side."""
-        return False
+    @classmethod
+    def of(cls, instance: Instance, options: PlanOptions) -> Self | None:
+        """Return the part of an instance: with carriers that stand still where carrying is not allowed."""
+        moves = allowed(CarryKind(), instance, options)
+        if not moves and not any(carrier.holds for carrier in instance.carriers):
+            return None
+        return cls(instance.carriers, moves)
 
     def extend(self, builder: GadgetBuilder) -> None:
         """Add the carriers with their nodes and edges."""
@@ -55,11 +53,11 @@ class CarryPart:
             if builder.height:
                 builder.join(list(nodes.values()), placed=self.moves)
             for origin, target in permutations(nodes, 2):
-                cost = builder.costs.of(NAME) + builder.costs.distance(origin, target)
+                cost = builder.costs.of(self.name) + builder.costs.distance(origin, target)
                 edge = builder.add_edge(nodes[origin], nodes[target], EdgeKind.CARRY, cost, carrier.capacity)
                 builder.add_aggregate(
                     Aggregate(
-                        NAME, (carrier.name, origin, target), (edge,), cost, carrier.capacity, CarryKind.grounded,
+                        self.name, (carrier.name, origin, target), (edge,), cost, carrier.capacity, CarryKind.grounded,
                         gather=nodes[origin], token=token, touches=(carrier.name,),
                     )
                 )  # fmt: skip
@@ -74,11 +72,3 @@ class CarryPart:
         if not isinstance(action, Carry):
             return None
         return action.carrier, state.stations[action.carrier], action.station
-
-
-def part_of(instance: Instance, options: PlanOptions) -> CarryPart | None:
-    """Return the part of an instance: with carriers that stand still where carrying is not allowed."""
-    moves = allowed(CarryKind(), instance, options)
-    if not moves and not any(carrier.holds for carrier in instance.carriers):
-        return None
-    return CarryPart(instance.carriers, moves)

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from typing import ClassVar, Self
 
-from smash.gadget.builder import GadgetBuilder
+from smash.gadget.builder import AggregatingPart, GadgetBuilder
 from smash.gadget.elements import Aggregate, EdgeKind, NodeKind
 from smash.problem.actions.kind import allowed
 from smash.problem.actions.topple import Topple, ToppleKind
 from smash.problem.model import TABLE, Aggregating, Instance, PlanOptions, State
 
-NAME = ToppleKind.name
-
 
 @dataclass(frozen=True, slots=True)
-class TopplePart:
+class TopplePart(AggregatingPart):
     """V^+_SMASH and E^+_SMASH: the TOPPLE nodes v_{T_s}, the TABLE node v_T, the interface nodes v_T^i.
 
     Attributes:
@@ -23,18 +22,19 @@ class TopplePart:
         most: most blocks of one topple (the paper's l; `max_topple` where that is smaller).
     """
 
+    name: ClassVar[str] = ToppleKind.name
     stacks: tuple[str, ...]
     most: int
 
-    @property
-    def name(self) -> str:
-        """The action's name."""
-        return NAME
-
-    @property
-    def stacks_several(self) -> bool:
-        """Toppled blocks lie side by side."""
-        return False
+    @classmethod
+    def of(cls, instance: Instance, options: PlanOptions) -> Self | None:
+        """Return the part of an instance: without TOPPLE nodes where only the table region is needed, to pick from."""
+        may = allowed(ToppleKind(), instance, options)
+        if not may and not instance.table:
+            return None
+        height = len(instance.blocks)
+        most = height if options.max_topple is None else min(height, options.max_topple)
+        return cls(instance.stacks if may else (), most)
 
     def extend(self, builder: GadgetBuilder) -> None:
         """Add the nodes and edges of G^+_SMASH."""
@@ -48,11 +48,11 @@ class TopplePart:
             return
         for stack, node in zip(self.stacks, staging, strict=True):
             builder.add_edge(builder.top(stack), node, EdgeKind.STAGE, 0, 1)
-        cost = builder.costs.of(NAME)
+        cost = builder.costs.of(self.name)
         for stack, node in zip(self.stacks, staging, strict=True):
             edge = builder.add_edge(node, table, EdgeKind.TOPPLE, cost, self.most)
             builder.add_aggregate(
-                Aggregate(NAME, (stack,), (edge,), cost, self.most, ToppleKind.grounded, gather=node, locks=stack)
+                Aggregate(self.name, (stack,), (edge,), cost, self.most, ToppleKind.grounded, gather=node, locks=stack)
             )
         for interface in interfaces:
             builder.add_edge(table, interface, EdgeKind.EXPOSE, 0, 1)
@@ -66,13 +66,3 @@ class TopplePart:
     def at(self, action: Aggregating, state: State) -> tuple[str, ...] | None:
         """Return the stack that a topple brings down."""
         return (action.location,) if isinstance(action, Topple) else None
-
-
-def part_of(instance: Instance, options: PlanOptions) -> TopplePart | None:
-    """Return the part of an instance: without TOPPLE nodes where only the table region is needed, to pick from."""
-    may = allowed(ToppleKind(), instance, options)
-    if not may and not instance.table:
-        return None
-    height = len(instance.blocks)
-    most = height if options.max_topple is None else min(height, options.max_topple)
-    return TopplePart(instance.stacks if may else (), most)

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from smash.planners.astar.driver import StateSearch
 from smash.planners.astar.restarts import search_law_states
-from smash.planners.greedy import passes
+from smash.planners.greedy import greedy_method
 from smash.planners.protocol import Method, MethodPlanner, Settings, SolveLog, left, not_plain, plain
 from smash.problem.actions.registry import FAMILY
 from smash.problem.problem import Problem
@@ -31,7 +31,7 @@ class AStarPlanner(MethodPlanner):
     def methods(self, problem: Problem, settings: Settings) -> Sequence[Method]:
         """Return the greedy passes, the fast search, and the one that takes any action and any costs."""
         return (
-            passes(settings, GREEDY_SHARE),
+            greedy_method(settings, GREEDY_SHARE),
             Method("numbered states", plain, search_numbered_states),
             Method("the law's states", not_plain, search_law_states),
         )
@@ -40,7 +40,6 @@ class AStarPlanner(MethodPlanner):
 def search_numbered_states(problem: Problem, log: SolveLog, until: float) -> None:
     """Search for plans cheaper than the log's best until that is proven or `until` [s, clock of `perf_counter`]."""
     assert log.cost is not None  # a plain problem that is feasible has a greedy plan
-    log.prove(0, "start")
     numbered = problem.numbered
     search = StateSearch(numbered, problem.options, log.cost, on_bound=lambda bound: log.prove(bound, "astar"))
     while search.ended is None and left(until) > 0:

@@ -24,10 +24,10 @@ class GreedyPlanner(MethodPlanner):
 
     def methods(self, problem: Problem, settings: Settings) -> Sequence[Method]:
         """Return its passes, which take every problem."""
-        return (passes(settings),)
+        return (greedy_method(settings),)
 
 
-def passes(settings: Settings, share: float = 1.0) -> Method:
+def greedy_method(settings: Settings, share: float = 1.0) -> Method:
     """Return the greedy passes as a method, for the first plans of other planners too."""
 
     def run(problem: Problem, log: SolveLog, until: float) -> None:

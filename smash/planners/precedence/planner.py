@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import ClassVar
 
-from smash.planners.greedy import passes
+from smash.planners.greedy import greedy_method
 from smash.planners.protocol import Method, MethodPlanner, Settings, SolveLog, plain
 from smash.problem.problem import Problem
 
@@ -41,7 +41,7 @@ def _hitting_set(problem: Problem, settings: Settings, log: SolveLog, until: flo
     """Bound the cost of every plan and look for one that meets the bound; fall back on greedy plans where none fits."""
     from smash.planners.precedence.bound import ORIGIN, precedence_bound
 
-    fallback = passes(settings, GREEDY_SHARE)
+    fallback = greedy_method(settings, GREEDY_SHARE)
     found = precedence_bound(
         problem,
         until,

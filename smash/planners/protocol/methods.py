@@ -57,7 +57,7 @@ class Method:
 
 
 def walk(methods: Sequence[Method], log: SolveLog, deadline: float) -> None:
-    """Run the methods in turn until the log is settled or the time is over.
+    """Run the methods in turn until the log is settled or the time is over; the first that takes the problem always.
 
     Args:
         methods: the table of a planner.
@@ -66,7 +66,7 @@ def walk(methods: Sequence[Method], log: SolveLog, deadline: float) -> None:
     """
     seconds: dict[str, float] = {}
     for method in methods:
-        if log.settled or left(deadline) <= 0:
+        if log.settled or (seconds and left(deadline) <= 0):
             break
         reason = method.takes(log.problem)
         if reason is not None:
@@ -112,5 +112,7 @@ class MethodPlanner(ProblemPlanner):
         elif problem.infeasible is not None:
             log.refute("feasibility", problem.infeasible)
         else:
+            if self.proves:
+                log.prove(0, "start")
             walk(self.methods(problem, settings), log, deadline)
         return log.plan()

@@ -146,9 +146,15 @@ def ask(
 
     Returns:
         Its answer, as the planner gives it: the law has not judged it yet.
+
+    Raises:
+        TypeError: where a planner from outside answers with something else.
     """
     if isinstance(planner, ProblemPlanner):
         return replace(planner.plan(problem, settings, budget, on_incumbent), planner=name)
     options = SolveOptions.of(problem.options, settings)
     result = planner.solve(problem.instance, options, budget, on_incumbent)
-    return result.as_plan(problem.instance, name, problem.options)
+    try:
+        return PlanResult.as_plan(result, problem.instance, name, problem.options)
+    except AttributeError as error:
+        raise TypeError(f"solve returned no valid PlanResult: {error}") from None

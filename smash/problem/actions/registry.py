@@ -14,7 +14,7 @@ from smash.problem.model import Aggregating, Instance, PlanOptions
 GROUP = "smash.aggregating"
 
 FAMILY: dict[str, AggregatingKind[Any]] = {
-    kind.name: kind for kind in (*added(GROUP), ToppleKind(), CarryKind(), LiftKind())
+    kind.name: kind for kind in (*added(GROUP, AggregatingKind), ToppleKind(), CarryKind(), LiftKind())
 }
 """Kinds of aggregating actions by name; the built-in ones cannot be replaced."""
 

@@ -14,15 +14,17 @@ from math import atan2, cos, hypot, pi, sin, sqrt
 import numpy as np
 from numpy.typing import ArrayLike
 
-from smash.execution.actions.pick_and_place import Move, Steps
 from smash.motion.collision import CONTACT_MARGIN, DEFAULT_MARGIN, CollisionChecker
-from smash.motion.errors import ExecutionFailure, NoMotion
+from smash.motion.errors import NoMotion
 from smash.motion.kinematics import descend
+from smash.motion.move import Move
 from smash.motion.obstacles import BodyName, HandState, Scene
 from smash.motion.paths import Path
+from smash.motion.planner import MotionPlanner
 from smash.motion.poses import ToolPose, Vector
 from smash.motion.robot import panda
 from smash.motion.timing import time_gently
+from smash.problem.errors import ExecutionFailure
 
 Piece = tuple[Path, float]
 """A path and the distance from other things that it keeps [m]."""
@@ -60,7 +62,7 @@ class Gentleness:
 
 
 def level_way(
-    steps: Steps,
+    planner: MotionPlanner,
     start: Vector,
     target: ToolPose,
     scene: Scene,
@@ -71,7 +73,7 @@ def level_way(
     """Motions from `start` to `target` that keep the tool's tilt.
 
     Args:
-        steps: Plans motions.
+        planner: Plans the pieces.
         start: Where the arm is [rad], shape (7,).
         target: Where the tool shall be; its orientation is the present one turned about the vertical.
         scene: What must not be touched; what is carried is left out.
@@ -82,7 +84,7 @@ def level_way(
     Raises:
         NoIk, NoMotion: where no such way is free; the message is about the lowest.
     """
-    search = _Search(steps, target, scene, hand)
+    search = _Search(planner, target, scene, hand)
     pieces = search.way(start)
     return [_gentle(path, hand, ignored, margin, manner) for path, margin in pieces]
 
@@ -90,8 +92,8 @@ def level_way(
 class _Search:
     """Level ways to one target, low ones first; a piece that is blocked rules out all ways that begin with it."""
 
-    def __init__(self, steps: Steps, target: ToolPose, scene: Scene, hand: HandState) -> None:
-        self._motion = steps.motion
+    def __init__(self, planner: MotionPlanner, target: ToolPose, scene: Scene, hand: HandState) -> None:
+        self._planner = planner
         self._target = target
         self._scene = scene
         self._hand = hand
@@ -153,7 +155,7 @@ class _Search:
             NoIk, NoMotion: at the first that is not possible.
         """
         x, y, z = (float(value) for value in self._target.position)
-        around = self._motion.straight(now, now + turn * FIRST_JOINT, self._scene, hand=self._hand)
+        around = self._planner.straight(now, now + turn * FIRST_JOINT, self._scene, hand=self._hand)
         across = self._line(around.end, (x, y, height))
         down = self._line(_end(across, around.end), (x, y, z), CONTACT_MARGIN)
         return [(around, DEFAULT_MARGIN), *across, *down]
@@ -167,7 +169,7 @@ class _Search:
         offset = np.asarray(point) - panda().forward(now).position
         if np.linalg.norm(offset) < SHORTEST:
             return []
-        return [(self._motion.line(now, offset, self._scene, hand=self._hand, margin=margin), margin)]
+        return [(self._planner.line(now, offset, self._scene, hand=self._hand, margin=margin), margin)]
 
 
 def _end(pieces: Sequence[Piece], start: Vector) -> Vector:

@@ -12,7 +12,7 @@ from smash.motion.fit_spheres import surface_samples
 from smash.motion.hulls import HullChecker, link_vertices
 from smash.motion.obstacles import Attached, HandState, Scene
 from smash.motion.robot import LOWER, READY, UPPER, panda
-from tests.execution.towers import SIDE, tower_scene
+from tests.motion.towers import SIDE, tower_scene
 
 TOWERS = tower_scene({-1.7: 4, -0.5: 5, 0.7: 9})
 HAND = HandState(SIDE / 2, Attached.cube(SIDE))

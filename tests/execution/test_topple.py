@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from smash.execution.actions.pick_and_place import Move, Steps
+from smash.execution.actions.arm_motions import ArmMotions
 from smash.execution.actions.topple import (
     MOST_CUT,
     MOST_SWEPT,
@@ -18,6 +18,7 @@ from smash.execution.actions.topple import (
 from smash.execution.scene.block_pose import standing
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.scene.tabletop import Slot
+from smash.motion.move import Move
 from smash.motion.robot import READY, panda
 
 
@@ -47,7 +48,7 @@ def test_a_push_meets_the_pile_at_the_speed_that_its_manner_asks_for_as_far_as_t
     scene = default_scene()
     slot, pile = scene.stacks[1], tuple(f"b{level}" for level in range(height + falling - 1))
     poses = {b: standing(slot.x, slot.y, (level + 0.5) * scene.side, slot.angle) for level, b in enumerate(pile)}
-    moves = [move for move in topple(Steps(scene), READY, slot, pile, height, poses) if isinstance(move, Move)]
+    moves = [move for move in topple(ArmMotions(scene), READY, slot, pile, height, poses) if isinstance(move, Move)]
     push = next(move for move in moves if move.margin == PUSH_MARGIN and move.ignored)
     tool = np.array([panda().forward(row).position for row in push.trajectory.sample(1e-3)])
     speeds = np.linalg.norm(np.diff(tool, axis=0), axis=1) / 1e-3

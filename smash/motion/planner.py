@@ -14,10 +14,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from smash.motion.collision import CONTACT_MARGIN, DEFAULT_MARGIN, CollisionChecker
 from smash.motion.errors import NoIk, NoMotion
-from smash.motion.hulls import Contact, HullChecker, densify
+from smash.motion.hulls import Contact, HullChecker
 from smash.motion.kinematics import along_line
 from smash.motion.obstacles import HandState, Scene
-from smash.motion.paths import Path, round_corners
+from smash.motion.paths import Path, densify, round_corners
 from smash.motion.poses import Vector
 from smash.motion.robot import within_limits
 

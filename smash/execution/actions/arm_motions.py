@@ -1,0 +1,143 @@
+"""The arm at a table: free motions among blocks and trays, for whatever action asks for them.
+
+Used twice by partial grounding: before the episode on the poses that are known, and during it on those that were
+revealed. Nothing here knows the simulator.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from smash.execution.scene.block_pose import BlockPose
+from smash.execution.scene.tabletop import Tabletop
+from smash.execution.scene.tray import Tray
+from smash.motion.collision import CONTACT_MARGIN, DEFAULT_MARGIN, CollisionChecker
+from smash.motion.errors import NoMotion
+from smash.motion.move import Move
+from smash.motion.obstacles import Attached, BodyName, HandState, Scene
+from smash.motion.paths import Path
+from smash.motion.planner import MotionPlanner
+from smash.motion.poses import Vector
+from smash.motion.robot import MAX_OPENING, READY
+from smash.motion.timing import Pace, time_path
+from smash.problem.errors import ExecutionFailure
+
+OPENINGS = (0.010, 0.005)
+"""Room between a finger and the block before it is grasped [m], the wide one first."""
+RELEASE_HEIGHT = 0.001
+"""What the hand holds is let go this far above what carries it [m]."""
+ENOUGH_CLEARANCE = 0.010
+"""Grasps with this much clearance are equally good [m]."""
+ESCAPES = (0.03, 0.06, 0.10, 0.15)
+"""Heights that the hand is lifted by where it stands too close to something to begin a motion [m]."""
+TIGHT_MARGINS = (0.005, 0.001)
+"""Distances that a motion keeps where neither is possible [m]."""
+CLOSE_SECONDS = 0.3
+OPEN_SECONDS = 0.2
+
+
+@dataclass(frozen=True, slots=True)
+class Grip:
+    """The fingers move to `opening` [m from the middle] for `seconds`, the arm stands still."""
+
+    opening: float
+    seconds: float
+
+
+Segment = Move | Grip
+"""A piece of an action: a motion of the arm, or one of the fingers."""
+
+
+class ArmMotions:
+    """Plans the arm's motions in one scene.
+
+    Args:
+        tabletop: Blocks, trays, and the share of the arm's limits that motions use.
+        seed: Of the motion planner.
+
+    Attributes:
+        planner: Plans paths.
+        holding: The hand with a block in it.
+    """
+
+    def __init__(self, tabletop: Tabletop, seed: int = 0) -> None:
+        self.tabletop = tabletop
+        self.side = tabletop.side
+        self.pace = Pace(tabletop.velocity, tabletop.acceleration)
+        self.planner = MotionPlanner(seed=seed)
+        self.holding = HandState(self.side / 2, Attached.cube(self.side))
+
+    def warm_up(self) -> None:
+        """Load and compile what motion planning uses, so that the first action's time is not theirs."""
+        bare = Scene.of_boxes([], np.empty((0, 3)), 0.0).with_table()
+        turned = READY + np.array([0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+        self.move(self.planner.plan(READY, turned, bare), HandState(0.0))
+        self.move(self.planner.line(READY, (0.0, 0.0, 0.05), bare), HandState(0.0))
+        importlib.import_module("smash.motion.rrtconnect")
+
+    def scene(self, blocks: Mapping[str, BlockPose], carriers: Mapping[str, BlockPose] | None = None) -> Scene:
+        """Blocks, carriers and table as the motion planner sees them."""
+        names = list(blocks)
+        centres = np.array([blocks[name].position for name in names]).reshape(-1, 3)
+        rotations = np.array([blocks[name].rotation for name in names]).reshape(-1, 3, 3)
+        scene = Scene.of_boxes(names, centres, self.side / 2, rotations)
+        for name, pose in (carriers or {}).items():
+            scene = scene.joined(self.tray.scene(name, pose))
+        return scene.with_table()
+
+    @property
+    def tray(self) -> Tray:
+        """What carriers are in this scene."""
+        assert self.tabletop.tray is not None, "a scene without a tray is bound to no instance with carriers"
+        return self.tabletop.tray
+
+    @property
+    def openings(self) -> tuple[float, ...]:
+        """How far the fingers are open around a block, from the middle [m], the widest first."""
+        return tuple(min(MAX_OPENING, self.side / 2 + room) for room in OPENINGS)
+
+    def transfer(
+        self, start: Vector, goal: Vector, scene: Scene, hand: HandState, ignored: frozenset[BodyName] = frozenset()
+    ) -> list[Move]:
+        """A free motion between configurations [rad], shape (7,); closer to blocks where it must be.
+
+        Raises:
+            NoMotion: where there is none.
+        """
+        seen = scene.without(ignored)
+        try:
+            return [self.move(self.planner.plan(start, goal, seen, hand=hand), hand, ignored)]
+        except NoMotion as failure:
+            wide = CollisionChecker(seen, hand, DEFAULT_MARGIN)
+            close = [joints for joints in (start, goal) if not wide.free(joints)]
+            if not close:
+                raise
+            for height in ESCAPES if close[0] is start else ():
+                try:
+                    up = self.planner.line(start, (0.0, 0.0, height), seen, hand=hand)
+                    onward = self.planner.plan(up.end, goal, seen, hand=hand)
+                except ExecutionFailure:
+                    continue
+                return [self.move(up, hand, ignored, CONTACT_MARGIN), self.move(onward, hand, ignored)]
+            for margin in TIGHT_MARGINS:
+                try:
+                    path = self.planner.plan(start, goal, seen, hand=hand, margin=margin)
+                except NoMotion:
+                    continue
+                return [self.move(path, hand, ignored, margin)]
+            raise failure
+
+    def move(
+        self,
+        path: Path,
+        hand: HandState,
+        ignored: frozenset[BodyName] = frozenset(),
+        margin: float = DEFAULT_MARGIN,
+        pace: Pace | None = None,
+    ) -> Move:
+        """A timed motion along `path`, at the usual pace where none is given."""
+        return Move(path, time_path(path, pace or self.pace), hand, ignored, margin)

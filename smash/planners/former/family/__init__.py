@@ -1,0 +1,1 @@
+"""`smash.planners.family` of 0.1."""

@@ -1,0 +1,81 @@
+"""What is planned before an episode, and what must wait until poses are revealed."""
+
+import numpy as np
+import pytest
+
+from smash.execution.actions.arm_motions import ArmMotions
+from smash.execution.grounding import Grounder
+from smash.execution.scene.geometry import Geometry
+from smash.execution.scene.scene_file import default_scene
+from smash.execution.scene.start import starting_poses
+from smash.motion.robot import READY, panda
+from smash.problem import IllegalAction, Law, Pick, Place, State, Topple
+from tests.execution.episodes import swapped_pair, swapped_plan
+
+SCENE = default_scene()
+
+
+@pytest.fixture(scope="module")
+def grounder():
+    return Grounder(ArmMotions(SCENE))
+
+
+def laid_out(instance):
+    slots = SCENE.bind(instance)
+    return Geometry(slots, blocks=starting_poses(instance, slots, SCENE, np.random.default_rng(0)))
+
+
+def ground(grounder, actions):
+    instance = swapped_pair()
+    return grounder.ground(actions, Law(instance), laid_out(instance), READY)
+
+
+def test_a_pick_of_a_toppled_block_is_a_gap_and_the_place_after_it_promises_a_way_down(grounder):
+    topple, pick, place, *_ = ground(grounder, swapped_plan().actions)
+    assert topple.segments
+    assert (pick.segments, pick.end, pick.problem) == (None, None, None)
+    assert place.segments is None
+    slot = SCENE.bind(swapped_pair())["s2"]
+    assert panda().forward(place.approach.line.end).position[:2] == pytest.approx([slot.x, slot.y], abs=1e-3)
+    assert np.array_equal(place.end, place.approach.line.start)
+
+
+def test_without_a_topple_everything_is_planned_and_each_motion_begins_where_the_one_before_ends(grounder):
+    tasks = ground(grounder, [Pick("b", "s2"), Place("b", "s1"), Pick("a", "s2"), Place("a", "s1")])
+    assert all(task.segments for task in tasks)
+    begun = READY
+    for task in tasks:
+        assert np.allclose(task.segments[0].path.start, begun)
+        begun = task.end
+
+
+def test_blocks_stand_as_high_as_the_law_says(grounder):
+    """After the plan's first pile of one, the next block on it stands one and a half sides high."""
+    instance = swapped_pair()
+    *_, state = Law(instance).states([Pick("b", "s2"), Place("b", "s1")])
+    stand = grounder.stand("s1", state, laid_out(instance))
+    assert stand.position[2] == pytest.approx(1.5 * SCENE.side)
+
+
+def test_what_the_law_refuses_is_not_planned(grounder):
+    with pytest.raises(IllegalAction, match="the top of 's2' is 'b'"):
+        ground(grounder, [Pick("a", "s2")])
+
+
+def test_neither_the_state_nor_the_poses_that_are_given_change(grounder):
+    instance = swapped_pair()
+    where = laid_out(instance)
+    grounder.ground([Topple("s2", 1)], Law(instance), where, READY)
+    assert set(where.blocks) == {"a", "b"}
+    assert State.start_of(instance).piles["s2"] == ["a", "b"]
+
+
+def test_a_failure_of_planning_is_kept_for_its_turn(grounder):
+    """The block stands beyond the arm's reach: nothing is planned, nothing raised."""
+    instance = swapped_pair()
+    where = laid_out(instance)
+    far = where.blocks["b"]
+    where.blocks["b"] = type(far)(far.position + np.array([2.0, 0.0, 0.0]), far.rotation)
+    (task,) = grounder.ground([Pick("b", "s2")], Law(instance), where, READY)
+    assert task.segments is None
+    assert task.problem.failure == "IK"
