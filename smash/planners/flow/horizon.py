@@ -62,7 +62,7 @@ class StepBound:
         rise: steps before the first move.
         sink: steps after the last one.
         moves: blocks that enter a pile in any plan (each block whose position is wrong).
-        falls: blocks that topples can bring down in all, each at most once; where lifts bring blocks to stacks, all.
+        falls: blocks that topples can bring down in all, each at most once, those of buffers put on a stack first.
         again: whether a block may have to fall again after each of its transfers.
         returns: whether each fallen block must be brought back, by a transfer each.
         cap: most blocks of one topple.
@@ -129,14 +129,13 @@ def step_bound(problem: Problem, scope: Scope) -> StepBound:
     tops: dict[str, int] = {}
     for location, level in goal.values():
         tops[location] = max(level, tops.get(location, 0))
-    in_stacks = sum(block in moving for stack in instance.stacks for block in instance.start[stack])
     lifted = max((each.capacity for each in gadget.aggregates if each.in_place), default=0)
     return StepBound(
         prices=Prices.of(gadget),
         rise=max([height - size for size in piles] + [1] * bool(instance.table), default=0),
         sink=height - min(tops.values(), default=1),
         moves=len(moving & goal.keys()),
-        falls=len(moving) - len(instance.table) if lifted else in_stacks,
+        falls=len(moving) - len(instance.table),
         again=not scope.direct,
         returns=isinstance(instance.goal, StacksGoal),
         cap=height if cap is None else min(height, cap),

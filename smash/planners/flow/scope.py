@@ -166,6 +166,8 @@ def goal_positions(instance: Instance) -> dict[str, tuple[str, int]]:
             return dict(positions)
         case OnGoal():
             return {}
+        case goal:
+            raise TypeError(f"{goal!r} is no goal")
 
 
 def correct_blocks(instance: Instance) -> frozenset[str]:

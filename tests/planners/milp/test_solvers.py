@@ -1,11 +1,13 @@
 """The array form of a MILP: two solvers give the same optimum, starts are taken, files are written."""
 
+import sys
+
 import numpy as np
 import pytest
 
 from smash.planners.milp.arrays import MilpBuilder
 from smash.planners.milp.solvers import gurobi, highs
-from smash.problem import MalformedFile
+from smash.problem import MalformedFile, Unsupported
 
 
 def cover(seed=0, elements=12, sets=20):
@@ -50,8 +52,11 @@ def test_a_model_without_columns_is_solved():
 
 
 def test_a_solve_ends_where_it_is_asked_to():
-    result = highs.solve(cover(1, 300, 600), time_limit=30, should_stop=lambda: True)
-    assert result.seconds < 10
+    asked = []
+    result = highs.solve(cover(1, 300, 600), time_limit=100, should_stop=lambda: asked.append(True) or True)
+    assert asked
+    assert result.status != "optimal"
+    assert result.nodes <= 1
 
 
 def test_a_model_is_written_with_the_names_of_its_columns(tmp_path):
@@ -59,3 +64,24 @@ def test_a_model_is_written_with_the_names_of_its_columns(tmp_path):
     assert "take_3" in (tmp_path / "m.mps").read_text()
     with pytest.raises(MalformedFile):
         highs.write(cover(), tmp_path / "m.txt")
+
+
+def test_a_start_is_taken_and_nothing_worse_is_reported():
+    model, seen = cover(3, 40, 80), []
+    best = highs.solve(model, time_limit=60)
+    again = highs.solve(
+        model, time_limit=60, start=best.vector, on_solution=lambda t, value, vector: seen.append(value)
+    )
+    assert again.objective == pytest.approx(best.objective)
+    assert seen == pytest.approx([best.objective] * len(seen))
+
+
+def test_the_bound_of_a_proven_optimum_is_its_objective():
+    result = highs.solve(cover(2), time_limit=60, absolute_gap=1e-6)
+    assert (result.status, result.bound) == ("optimal", pytest.approx(result.objective))
+
+
+def test_without_gurobipy_the_extra_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "gurobipy", None)
+    with pytest.raises(Unsupported, match="extra `gurobi`"):
+        gurobi.solve(cover(), time_limit=1)
