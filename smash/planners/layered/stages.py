@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property, partial
 
 from smash.planners.layered.blocks import MovingBlocks
@@ -25,17 +26,17 @@ POSITION_SECONDS = 1e-3
 ORIGIN = "layered relaxation"
 
 
+@dataclass
 class ContractedStages:
     """The methods of one solve.
 
-    Args:
+    Attributes:
         problem: what is planned.
         settings: the solver's, and a horizon where one is chosen.
     """
 
-    def __init__(self, problem: Problem, settings: Settings) -> None:
-        self.problem = problem
-        self.settings = settings
+    problem: Problem
+    settings: Settings
 
     @cached_property
     def blocks(self) -> MovingBlocks:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from math import floor, isfinite
 
@@ -28,18 +29,18 @@ UNPROBED = {"presolve": "off"}
 ORIGIN = "layered flow without order"
 
 
+@dataclass
 class NetworkStages:
     """The methods of one solve, and what they tell each other.
 
-    Args:
+    Attributes:
         problem: what is planned.
         settings: the solver's, and a horizon where one is chosen.
     """
 
-    def __init__(self, problem: Problem, settings: Settings) -> None:
-        self.problem = problem
-        self.settings = settings
-        self._most_actions: dict[int, int | None] = {}
+    problem: Problem
+    settings: Settings
+    _most_actions: dict[int, int | None] = field(default_factory=dict)
 
     @cached_property
     def moving(self) -> Moving:
