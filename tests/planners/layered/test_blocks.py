@@ -26,6 +26,10 @@ def test_blocks_of_the_table_and_of_carriers_come_last():
     assert (blocks.lying, blocks.held) == ({1}, {2: 0})
 
 
+def test_a_block_of_the_table_without_a_place_stays_there():
+    assert MovingBlocks.of(problem({"s": "a"}, PositionsGoal({"a": ("t", 1)}), table=("m",))).names == ("a",)
+
+
 def test_towers_of_an_on_goal_float_where_no_part_of_them_stands():
     blocks = MovingBlocks.of(problem({"s": "abc"}, OnGoal({"a": "c"}, ("c",))))
     assert not blocks.located

@@ -47,10 +47,10 @@ def test_a_lift_takes_the_lowest_that_it_holds_and_a_carry_comes_last():
 
 
 def test_a_block_of_an_on_goal_goes_onto_the_one_under_it():
-    chosen = Chosen(priced({"s": "ab", "t": "c"}, OnGoal({"b": "c"}), options=NO_TOPPLE, buffers="u"))
+    chosen = Chosen(priced({"s": "ab", "u": "c"}, OnGoal({"b": "c"}), "s t u", options=NO_TOPPLE))
     block = chosen.moving.blocks.names.index("b")
     chosen.take(chosen.model.move, 0, block, chosen.moving.start, chosen.moving.home)
-    assert chosen.plan() == (Pick("b", "s"), Place("b", "t"))
+    assert chosen.plan() == (Pick("b", "s"), Place("b", "u"))
 
 
 def test_a_block_of_the_table_is_picked_from_there():

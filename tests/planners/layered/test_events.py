@@ -1,11 +1,15 @@
 """The contracted gadget with unbounded buffers: its optimum bounds every plan, its edges are those of the gadget."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 
 from smash.planners.layered.blocks import MovingBlocks
 from smash.planners.layered.events import build_layered, read_events
 from smash.planners.layered.horizons import sound_layers
+from smash.planners.milp.solvers import highs
 from smash.problem import PlanOptions, PositionsGoal
 from smash.problem.problem import Problem
 from tests.oracle import optimal_cost
@@ -38,8 +42,21 @@ def test_two_blocks_that_wait_for_each_other_do_not_both_move_directly():
     assert optimum(relaxation(problem({"s": "a", "t": "b"}, {"s": "b", "t": "a"}, options=NO_TOPPLE))) == 6
 
 
+def test_circles_of_waiting_cut_fractional_solutions_off():
+    turning = {"s": "a", "t": "b", "v": "c"}, {"s": "c", "t": "a", "v": "b"}
+    milp = relaxation(problem(*turning, "s t v", options=NO_TOPPLE)).milp
+    fractional = replace(milp, integral=np.zeros(milp.columns, dtype=bool))
+    assert highs.solve(fractional, time_limit=10).objective > 7 - 1e-6  # 6, were each a third direct and aside
+
+
 def test_too_few_layers_hold_no_plan():
     assert optimum(relaxation(reversal(), 2)) is None
+
+
+def test_what_falls_in_a_layer_is_picked_in_a_later_one():
+    made = problem({"s": "ab"}, PositionsGoal({"a": ("t", 1)}))
+    assert optimum(relaxation(made, 1)) is None
+    assert optimum(relaxation(made, 2)) == 3
 
 
 def test_a_block_of_the_table_is_picked_and_placed():

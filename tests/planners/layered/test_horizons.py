@@ -12,7 +12,7 @@ from smash.planners.layered.plain_positions import build_plain_positions
 from smash.planners.layered.positions import read_positions
 from smash.planners.milp.solving import Solving, Stage
 from smash.planners.protocol import Settings, SolveLog
-from smash.problem import Place
+from smash.problem import Pick, Place
 from smash.problem.problem import Problem
 from tests.cheapest import cheapest_plan
 from tests.planners.layered.made import NO_TOPPLE, problem, reversal
@@ -45,9 +45,11 @@ def test_without_a_plan_nothing_is_known():
     assert enough_layers(MovingBlocks.of(reversal()), None) is None
 
 
-def grown(made, first, horizon=None):
-    """Grow the model of positions; return the log and the horizons tried."""
+def grown(made, first, horizon=None, plan=None):
+    """Grow the model of positions, from a plan that is known; return the log and the horizons tried."""
     log, tried, blocks = SolveLog(made), [], MovingBlocks.of(made)
+    if plan is not None:
+        assert log.offer(plan, "known")
 
     def stage(layers, bound, best):
         tried.append(layers)
@@ -68,3 +70,10 @@ def test_horizons_grow_until_one_holds_every_cheaper_plan_and_that_is_the_proof(
 def test_a_chosen_horizon_is_the_only_one_and_a_short_one_proves_nothing():
     log, tried = grown(reversal(options=NO_TOPPLE), 2, horizon=3)
     assert (tried, log.cost, log.bound) == ([3], None, None)
+
+
+@pytest.mark.parametrize(("horizon", "bound"), [(2, None), (3, 8)])
+def test_no_better_plan_in_too_few_layers_is_no_proof(horizon, bound):
+    plan = [action for move in ("bsu", "asv", "bus", "avs") for action in (Pick(*move[:2]), Place(move[0], move[2]))]
+    log, _ = grown(reversal(options=NO_TOPPLE), 2, horizon, plan)
+    assert (log.cost, log.bound) == (8, bound)

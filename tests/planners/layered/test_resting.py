@@ -19,6 +19,10 @@ def test_as_many_blocks_rest_as_there_are_places(buffers, cost):
     assert optimum(resting(reversal(buffers, NO_TOPPLE))) == cost
 
 
+def test_what_rests_on_a_goal_keeps_it_from_growing():
+    assert optimum(resting(problem({"s": "ab"}, {"t": "ab"}, options=NO_TOPPLE))) is None
+
+
 def test_its_solutions_say_where_blocks_rest_and_are_plans():
     made = reversal(options=NO_TOPPLE)
     model = resting(made)

@@ -29,5 +29,7 @@ def test_a_lift_keeps_the_order_of_a_pair():
     assert (
         optimum(build_relaxed(made, Moving.of(made), 2, ordered=True)) == cheapest_plan(made.instance, made.options)[0]
     )
+    turned = problem({"s": "abcd"}, {"t": "dcba"}, buffers="u", options=NO_TOPPLE, capacities={"lift": 3})
+    assert optimum(build_relaxed(turned, Moving.of(turned), 3, ordered=True)) is None
     same = problem({"s": "ab"}, PositionsGoal({"a": ("t", 1), "b": ("t", 2)}), capacities={"lift": 2})
     assert optimum(build_relaxed(same, Moving.of(same), 1, ordered=True)) == 1
