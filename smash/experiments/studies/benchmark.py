@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from time import perf_counter
 
-from smash.planners.protocol import Settings, SolveOptions, ask
+from smash.planners.protocol import Settings, ask
 from smash.planners.registry import get_planner
 from smash.problem.errors import SmashError
 from smash.problem.files.documents import write_text
@@ -68,7 +68,9 @@ def layered_rows() -> Iterator[str]:
 
 def solver_rows() -> Iterator[str]:
     """Yield the table of HiGHS against Gurobi on the layered relaxation, the models that both take."""
-    from smash.planners.layered.events import LayeredProblem, build_layered
+    from smash.planners.layered.blocks import MovingBlocks
+    from smash.planners.layered.events import build_layered
+    from smash.planners.layered.horizons import sound_layers
     from smash.planners.milp.solvers import gurobi, highs
 
     yield "| set | variant | models | HiGHS [s] | Gurobi [s] | ratio (median) |\n|---|---|---|---|---|---|"
@@ -76,9 +78,9 @@ def solver_rows() -> Iterator[str]:
         for topple in (True, False):
             pairs = []
             for instance in read_suite(suite)[:10]:
-                options = SolveOptions(topple)
-                problem = LayeredProblem.of(instance, options)
-                model = build_layered(problem, options, problem.sound_horizon).milp
+                problem = Problem(instance, PlanOptions(topple))
+                blocks = MovingBlocks.of(problem)
+                model = build_layered(problem, blocks, sound_layers(blocks)).milp
                 theirs = gurobi.solve(model, time_limit=BUDGET)
                 pairs.append((highs.solve(model, time_limit=BUDGET).seconds, theirs.seconds))
             ours, others = zip(*pairs, strict=True)

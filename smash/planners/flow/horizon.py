@@ -9,7 +9,8 @@ import numpy as np
 
 from smash.gadget import Gadget
 from smash.planners.flow.scope import Scope, goal_positions
-from smash.problem.model import PlanOptions, StacksGoal
+from smash.problem.model import StacksGoal
+from smash.problem.problem import Problem
 
 FREE = 1 << 40
 """The cost of an action that there is not."""
@@ -118,9 +119,9 @@ class StepBound:
         return low
 
 
-def step_bound(scope: Scope, options: PlanOptions) -> StepBound:
-    """Return the bound for a scope."""
-    instance, gadget = scope.instance, scope.gadget
+def step_bound(problem: Problem, scope: Scope) -> StepBound:
+    """Return the bound for a problem and its scope."""
+    instance, gadget, cap = scope.instance, scope.gadget, problem.options.max_topple
     height = gadget.height
     goal = goal_positions(instance)
     moving = {instance.blocks[number] for number in scope.moving}
@@ -137,7 +138,7 @@ def step_bound(scope: Scope, options: PlanOptions) -> StepBound:
         falls=len(moving) - len(instance.table),
         again=not scope.direct,
         returns=isinstance(instance.goal, StacksGoal),
-        cap=height if options.max_topple is None else min(height, options.max_topple),
+        cap=height if cap is None else min(height, cap),
         waiting=len(instance.table),
         lifted=lifted,
     )

@@ -26,6 +26,7 @@ from smash.gadget import EdgeKind, Gadget, NodeKind, gadget_of
 from smash.gadget.motion import settled
 from smash.gadget.parts.registry import parts_of
 from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal, State
+from smash.problem.problem import Problem
 
 
 @dataclass(frozen=True)
@@ -125,8 +126,9 @@ class Scope:
         return at is not None and head.location == self.gadget.nodes[at].location
 
 
-def scope_of(instance: Instance, options: PlanOptions) -> Scope:
-    """Return the scope of an instance, whose start must not be its goal."""
+def scope_of(problem: Problem) -> Scope:
+    """Return the scope of a problem, whose start must not be its goal."""
+    instance, options = problem.instance, problem.options
     correct = correct_blocks(instance)
     moving = tuple(number for number, block in enumerate(instance.blocks) if block not in correct)
     several, distances = can_stack_several(instance, options), bool(instance.costs.travel)
@@ -164,6 +166,8 @@ def goal_positions(instance: Instance) -> dict[str, tuple[str, int]]:
             return dict(positions)
         case OnGoal():
             return {}
+        case goal:
+            raise TypeError(f"{goal!r} is no goal")
 
 
 def correct_blocks(instance: Instance) -> frozenset[str]:

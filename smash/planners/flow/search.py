@@ -8,9 +8,7 @@ model's and of c + 1, c the largest cost whose plans all fit.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from time import perf_counter
-from typing import Any
+from collections.abc import Sequence
 
 from smash.gadget.decode import decode
 from smash.planners.flow.arcs import count_arcs, reaches_of
@@ -19,10 +17,11 @@ from smash.planners.flow.model import FlowModel, build
 from smash.planners.flow.scope import scope_of
 from smash.planners.flow.warm import motion_of
 from smash.planners.milp.arrays import Floats, MilpResult
-from smash.planners.milp.solvers import highs
-from smash.planners.protocol import IncumbentLog, SolveOptions
-from smash.problem.errors import IllegalAction, SmashError
-from smash.problem.model import Instance
+from smash.planners.milp.solving import Solving, Stage, whole
+from smash.planners.protocol import Settings, SolveLog, left
+from smash.problem.errors import SmashError
+from smash.problem.model import Action, Instance
+from smash.problem.problem import Problem
 
 MOST_ARCS = 1_500_000
 """Arcs beyond which a model is not built: it would need some 10 GB and no solver would start on it in time."""
@@ -43,29 +42,33 @@ class TooLarge(SmashError):
     exit_code = 6
 
 
-@dataclass
 class FlowSearch:
-    """One solve: the models tried; `log` takes the plans and the bounds.
+    """One solve: models of growing horizon; the log takes the plans and the bounds.
 
     Bounds come from `moves` (each misplaced block moves once) or `milp`.
-
-    Attributes:
-        details: sizes, horizons and times, for the result.
     """
 
-    instance: Instance
-    options: SolveOptions
-    log: IncumbentLog
-    deadline: float
-    details: dict[str, Any] = field(default_factory=dict)
+    def __init__(self, problem: Problem, settings: Settings, log: SolveLog, until: float) -> None:
+        """Work out the gadget and what each pebble may reach.
 
-    def __post_init__(self) -> None:
-        check_gadget_size(self.instance, self.deadline - perf_counter())
-        self.scope = scope_of(self.instance, self.options)
-        self.bound = step_bound(self.scope, self.options)
+        Args:
+            problem: what is planned.
+            settings: the solver's, and a horizon where one is chosen.
+            log: takes plans and bounds.
+            until: when to end [s, clock of `perf_counter`].
+
+        Raises:
+            TooLarge: where the gadget is too large to look at.
+        """
+        check_gadget_size(problem.instance, left(until))
+        self.problem = problem
+        self.log = log
+        self.horizon = settings.horizon
+        self.solving = Solving(settings, log, until)
+        self.scope = scope_of(problem)
+        self.bound = step_bound(problem, self.scope)
         self.reaches = reaches_of(self.scope)
-        self.log.prove(self.bound.least_cost, "moves")
-        self.details["models"] = []
+        log.prove(self.bound.least_cost, "moves")
 
     def first_horizon(self) -> int:
         """Return the horizon that plans are looked for with.
@@ -82,22 +85,16 @@ class FlowSearch:
         """Solve until proven, out of time, or, with a given horizon, once.
 
         Raises:
-            TooLarge: where the first model cannot be built.
+            TooLarge: where a model cannot be built.
         """
-        horizon = self.options.horizon or self.first_horizon()
-        while not self.log.proven and perf_counter() < self.deadline:
-            try:
-                result = self._solve(horizon)
-            except TooLarge as error:
-                if not self.details["models"]:
-                    raise
-                self.details["stopped"] = str(error)
-                return
-            if result.status not in ("optimal", "infeasible") or self.options.horizon is not None:
+        horizon = self.horizon or self.first_horizon()
+        while not self.solving.done():
+            result = self._solve(horizon)
+            if result is None or result.status not in ("optimal", "infeasible") or self.horizon is not None:
                 return
             horizon = self._next_horizon(horizon)
-        if not self.details["models"]:
-            self.details["stopped"] = f"the time was up before the model of horizon {horizon} was begun"
+        if not self.log.details.get("stages"):
+            self.log.details["stopped"] = f"the time was up before the model of horizon {horizon} was begun"
 
     def _next_horizon(self, horizon: int) -> int:
         if self.log.cost is None:
@@ -111,66 +108,40 @@ class FlowSearch:
             TooLarge: where it has too many arcs for the memory or the time left.
         """
         arcs = count_arcs(self.scope, self.reaches, horizon)
-        most = min(MOST_ARCS, ARCS_PER_SECOND * (self.deadline - perf_counter()) / 2)
+        most = min(MOST_ARCS, ARCS_PER_SECOND * left(self.solving.until) / 2)
         if arcs > most:
             raise TooLarge(f"the flow model has {arcs:,} arcs at horizon {horizon}; at most {most:,.0f} are built here")
         return build(self.scope, self.reaches, horizon)
 
-    def _solve(self, horizon: int) -> MilpResult:
-        began = perf_counter()
-        model = self.model(horizon)
-        built = perf_counter()
-        start = self._start(model)
-
-        def report(_seconds: float, _objective: float, vector: Floats) -> None:
-            self._offer(model, vector)
-
-        result = highs.solve(
-            model.milp,
-            time_limit=self.deadline - perf_counter(),
-            threads=self.options.threads,
-            seed=self.options.seed,
-            start=start,
-            on_solution=report,
-            should_stop=lambda: perf_counter() > self.deadline or self.log.proven,
+    def _solve(self, horizon: int) -> MilpResult | None:
+        stage = Stage(
+            name="flow",
+            build=lambda _until: self.model(horizon),
+            decode=self._decode,
+            horizon=horizon,
+            start=self._start,
             options={"presolve_rule_off": NO_PROBING},
         )
-        if result.vector is not None:
-            self._offer(model, result.vector)
-        self._raise_bound(horizon, result)
-        self.details["models"].append(
-            {
-                "horizon": horizon,
-                **model.milp.size(),
-                "build_seconds": round(built - began, 3),
-                "solve_seconds": round(result.seconds, 3),
-                "nodes": result.nodes,
-                "status": result.status,
-                "started_from_a_plan": start is not None,
-            }
-        )
+        result = self.solving.run(stage)
+        if result is not None:
+            self._raise_bound(horizon, result)
         return result
 
-    def _offer(self, model: FlowModel, vector: Floats) -> None:
-        try:
-            self.log.offer(decode(model.motion(vector), self.scope.instance, self.options), "milp")
-        except IllegalAction as error:
-            self.log.refusals.append(f"milp: {error}")
+    def _decode(self, model: FlowModel, vector: Floats) -> Sequence[Action]:
+        return decode(model.motion(vector), self.scope.instance, self.problem.options)
 
     def _start(self, model: FlowModel) -> Floats | None:
-        if self.log.best is None:
-            return None
-        return model.vector(motion_of(self.scope, self.instance, self.log.best))
+        return None if self.log.best is None else model.vector(motion_of(self.problem, self.scope, self.log.best))
 
     def _steps_of_best(self) -> int:
-        return motion_of(self.scope, self.instance, self.log.best or ()).steps
+        return motion_of(self.problem, self.scope, self.log.best or ()).steps
 
     def _raise_bound(self, horizon: int, result: MilpResult) -> None:
         """Take the model's bound as far as the horizon holds all plans below it."""
         most = self.log.cost if self.log.cost is not None else self._most_in(horizon)
         fits = self.bound.fitting_cost(horizon, most) + 1
-        proves = fits if result.status == "infeasible" else min(fits, _rounded(result.bound))
-        self.log.prove(proves, "milp")
+        proven = None if result.status == "infeasible" else whole(result.bound)
+        self.log.prove(fits if result.status == "infeasible" else min(fits, proven or 0), "milp")
 
     def _most_in(self, horizon: int) -> int:
         """Return a cost that no motion of `horizon` steps exceeds."""
@@ -190,8 +161,3 @@ def check_gadget_size(instance: Instance, seconds: float = math.inf) -> None:
     edges = blocks * (2 * locations * blocks + locations * locations + blocks * locations)
     if edges > min(MOST_EDGES, EDGES_PER_SECOND * seconds / 2):
         raise TooLarge(f"the gadget of {blocks} blocks and {locations} locations has {edges:,} edges to look at")
-
-
-def _rounded(bound: float) -> int:
-    """Round a dual bound up: costs are whole numbers."""
-    return math.ceil(bound - 1e-6) if math.isfinite(bound) else 0

@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from smash.gadget.encode import encode
 from smash.gadget.motion import PebbleMotion
 from smash.planners.flow.scope import Scope
-from smash.problem.model import Action, Aggregating, Instance, Pick, Place, State
-from smash.problem.rules import Law
+from smash.problem.model import Action, Aggregating, Pick, Place, State
+from smash.problem.problem import Problem
 
 
-def motion_of(scope: Scope, instance: Instance, actions: Sequence[Action]) -> PebbleMotion:
-    """Return the motion of a legal plan of `instance` on the gadget of `scope`."""
-    if scope.instance.buffers != instance.buffers or scope.own_buffers:
-        actions = _Renaming(scope, instance).run(actions)
+def motion_of(problem: Problem, scope: Scope, actions: Sequence[Action]) -> PebbleMotion:
+    """Return the motion of a legal plan of a problem on the gadget of its scope."""
+    if scope.instance.buffers != problem.instance.buffers or scope.own_buffers:
+        actions = _Renaming(problem, scope).run(actions)
     motion = encode(scope.instance, actions, scope.gadget)
     gadget = scope.gadget
     lifted = {
@@ -32,10 +32,11 @@ class _Renaming:
     Only where buffers are interchangeable; no aggregating action names one then.
     """
 
-    def __init__(self, scope: Scope, instance: Instance) -> None:
+    def __init__(self, problem: Problem, scope: Scope) -> None:
+        instance = problem.instance
         self._scope = scope
         self._own = dict(zip(scope.instance.blocks, scope.own_buffer, strict=True))
-        self._law, self._state = Law(instance), State.start_of(instance)
+        self._law, self._state = problem.law, State.start_of(instance)
         self._used = {buffer for buffer in instance.buffers if instance.start[buffer]}
         self._name = {location: location for location in (*instance.stacks, *self._used)}
         self._at = {block: location for location, pile in instance.start.items() for block in pile}

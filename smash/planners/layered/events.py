@@ -20,9 +20,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from smash.planners.layered.blocks import MovingBlocks
 from smash.planners.milp.arrays import Floats, Ints, Milp, MilpBuilder
-from smash.problem.model import Instance, PlanOptions
-from smash.problem.views.demands import Demands, demands_of
+from smash.planners.milp.columns import taken
+from smash.problem.problem import Problem
 
 TRANSFER_COST = 2
 TOPPLE_COST = 1
@@ -33,66 +34,6 @@ KINDS = ("direct", "aside", "fall", "from_aside", "from_table")
 
 
 @dataclass(frozen=True, slots=True)
-class LayeredProblem:
-    """The moving blocks and the chains that they leave and fill, by number.
-
-    Attributes:
-        demands: what the goal asks of the start.
-        blocks: moving blocks: the leaving ones, then those that lie on the table and have a place.
-        piles: per location with a leaving block: its name and the numbers of those blocks, bottom first.
-        chains: per goal chain: its location (None: any free one) and the numbers of its blocks, bottom first.
-        lying: numbers of the blocks that lie on the table at the start.
-        placed: numbers of the blocks with a goal place.
-        toppled: locations beside which there is a topple region.
-    """
-
-    demands: Demands
-    blocks: tuple[str, ...]
-    piles: tuple[tuple[str, tuple[int, ...]], ...]
-    chains: tuple[tuple[str | None, tuple[int, ...]], ...]
-    lying: frozenset[int]
-    placed: frozenset[int]
-    toppled: frozenset[str]
-
-    @classmethod
-    def of(cls, instance: Instance, options: PlanOptions) -> LayeredProblem:
-        """Number the moving blocks of an instance."""
-        demands = demands_of(instance)
-        lying = [block for block in instance.table if block in demands.placed]
-        blocks = [block for pile in demands.leaving.values() for block in pile] + lying
-        number = {block: index for index, block in enumerate(blocks)}
-
-        def numbers(pile: tuple[str, ...]) -> tuple[int, ...]:
-            return tuple(number[block] for block in pile)
-
-        chains: list[tuple[str | None, tuple[int, ...]]] = [(at, numbers(pile)) for at, pile in demands.build.items()]
-        chains += [(None, numbers(chain.blocks)) for chain in demands.floating]
-        return cls(
-            demands=demands,
-            blocks=tuple(blocks),
-            piles=tuple((at, numbers(pile)) for at, pile in demands.leaving.items() if pile),
-            chains=tuple(chains),
-            lying=frozenset(number[block] for block in lying),
-            placed=frozenset(number[block] for block in demands.placed),
-            toppled=frozenset(instance.stacks) if options.topple else frozenset(),
-        )
-
-    @property
-    def sound_horizon(self) -> int:
-        """A number of layers that holds every plan of the relaxation: one for each removal and each placement."""
-        return max(1, len(self.blocks) - len(self.lying) + len(self.placed))
-
-    def short_horizon(self) -> int:
-        """A number of layers that plans of few detours fit: empty the piles, then fill the longest chain.
-
-        One layer is enough for the piles that can be toppled.
-        """
-        highest = max((1 if at in self.toppled else len(pile) for at, pile in self.piles), default=0)
-        longest = max((len(chain) for _, chain in self.chains), default=0)
-        return min(self.sound_horizon, highest + longest + 2)
-
-
-@dataclass(frozen=True, slots=True)
 class LayeredModel:
     """The MILP and the meaning of its columns.
 
@@ -100,45 +41,40 @@ class LayeredModel:
     `topples`: per location the (cuts, layers) columns; cut c takes the leaving blocks from the c-th on.
     """
 
-    problem: LayeredProblem
-    horizon: int
     milp: Milp
     edges: dict[str, Ints]
     topples: dict[str, Ints]
 
 
-def build_layered(
-    problem: LayeredProblem, options: PlanOptions, horizon: int, deadline: float = math.inf
-) -> LayeredModel:
+def build_layered(problem: Problem, blocks: MovingBlocks, horizon: int, deadline: float = math.inf) -> LayeredModel:
     """Build the layered model with unbounded buffers.
 
     Args:
-        problem: the moving blocks.
-        options: topple or not, and its cap.
+        problem: what is planned.
+        blocks: its moving blocks.
         horizon: number of layers.
         deadline: when to give up [s, clock of `perf_counter`].
 
     Raises:
         OutOfTime: where the deadline has passed.
     """
-    return EventsBuilder(problem, options, horizon, deadline).build()
+    return EventsBuilder(problem, blocks, horizon, deadline).build()
 
 
 class EventsBuilder:
     """Builds the rows of `build_layered`, one method a constraint."""
 
-    def __init__(self, problem: LayeredProblem, options: PlanOptions, horizon: int, deadline: float) -> None:
-        self.problem = problem
-        self.options = options
+    def __init__(self, problem: Problem, blocks: MovingBlocks, horizon: int, deadline: float) -> None:
+        self.blocks = blocks
+        self.cap = problem.options.max_topple
         self.horizon = horizon
         self.milp = MilpBuilder(deadline)
-        count = len(problem.blocks)
-        self.edges = {kind: np.full((count, horizon), -1, dtype=np.int64) for kind in KINDS}
+        self.edges = {kind: np.full((len(blocks), horizon), -1, dtype=np.int64) for kind in KINDS}
         self.topples: dict[str, Ints] = {}
-        self.source = {block: at for at, pile in problem.piles for block in pile}
-        self.target = {block: at for at, chain in problem.chains for block in chain}
+        self.source = {block: at for at, pile in blocks.piles for block in pile}
+        self.target = {block: at for at, chain in blocks.chains for block in chain}
         self.rank = {
-            b: (number, rank) for number, (_, chain) in enumerate(problem.chains) for rank, b in enumerate(chain)
+            b: (number, rank) for number, (_, chain) in enumerate(blocks.chains) for rank, b in enumerate(chain)
         }
 
     def build(self) -> LayeredModel:
@@ -148,32 +84,32 @@ class EventsBuilder:
         self._add_topples()
         self._leave_and_arrive_once()
         self._return_after_leaving()
-        for _, pile in self.problem.piles:
+        for _, pile in self.blocks.piles:
             for lower, upper in itertools.pairwise(pile):
                 self._leave_in_order(lower, upper)
-        for _, chain in self.problem.chains:
+        for _, chain in self.blocks.chains:
             for under, upper in itertools.pairwise(chain):
                 self._arrive_in_order(under, upper)
         self._clear_before_filling()
         self._one_action_a_stack()
         self._detours()
         model = self.milp.build(self._name)
-        return LayeredModel(self.problem, self.horizon, model, self.edges, self.topples)
+        return LayeredModel(model, self.edges, self.topples)
 
     def _add_edges(self) -> None:
-        for block in range(len(self.problem.blocks)):
-            leaves = block not in self.problem.lying
-            arrives = block in self.problem.placed
+        for block in range(len(self.blocks)):
+            leaves = block not in self.blocks.lying
+            arrives = block in self.blocks.placed
             at = self.source.get(block)
             if leaves and arrives and (at != self.target[block] or self.target[block] is None):
                 self._add_edge("direct", block, TRANSFER_COST)
             if leaves:
                 self._add_edge("aside", block, TRANSFER_COST)
-                if at in self.problem.toppled:
+                if at in self.blocks.toppled:
                     self._add_edge("fall", block, 0)
                 if arrives:
                     self._add_edge("from_aside", block, TRANSFER_COST)
-            if arrives and (not leaves or at in self.problem.toppled):
+            if arrives and (not leaves or at in self.blocks.toppled):
                 self._add_edge("from_table", block, TRANSFER_COST)
 
     def _add_edge(self, kind: str, block: int, cost: float) -> None:
@@ -181,15 +117,15 @@ class EventsBuilder:
 
     def _add_states(self) -> None:
         """Columns for what a block has done by the end of a layer: each the last one plus what happens in the layer."""
-        leaving = [block for block in range(len(self.problem.blocks)) if block not in self.problem.lying]
+        leaving = [block for block in range(len(self.blocks)) if block not in self.blocks.lying]
         self.left = self._sums(leaving, {"direct": 1, "aside": 1, "fall": 1})
-        self.arrived = self._sums(sorted(self.problem.placed), {"direct": 1, "from_aside": 1, "from_table": 1})
+        self.arrived = self._sums(sorted(self.blocks.placed), {"direct": 1, "from_aside": 1, "from_table": 1})
         self.rests = self._sums(leaving, {"aside": 1, "from_aside": -1})
         self.lies = self._sums(leaving, {"fall": 1, "from_table": -1})
 
     def _sums(self, blocks: list[int], signs: dict[str, int]) -> Ints:
         """Return columns (blocks, layers): the signed sum of edges up to a layer, between 0 and 1."""
-        sums = np.full((len(self.problem.blocks), self.horizon), -1, dtype=np.int64)
+        sums = np.full((len(self.blocks), self.horizon), -1, dtype=np.int64)
         for block in blocks:
             sums[block] = self.milp.add_columns(self.horizon, integral=False)
             for layer in range(self.horizon):
@@ -204,10 +140,10 @@ class EventsBuilder:
 
     def _add_topples(self) -> None:
         """Without a cap the whole leaving part falls: what lies on the table is as near as what lies on a stack."""
-        for location, pile in self.problem.piles:
-            if location not in self.problem.toppled:
+        for location, pile in self.blocks.piles:
+            if location not in self.blocks.toppled:
                 continue
-            cuts = len(pile) if self.options.max_topple is not None else 1
+            cuts = len(pile) if self.cap is not None else 1
             columns = self.milp.add_columns(cuts * self.horizon, cost=TOPPLE_COST).reshape(cuts, self.horizon)
             self.topples[location] = columns
             for layer in range(self.horizon):
@@ -221,9 +157,8 @@ class EventsBuilder:
             if position < len(cuts):  # what lies from the cut on has left by the end of the layer
                 gone = self._left(block, layer)
                 self.milp.add_row([*gone, cuts[position]], [*[1] * len(gone), -1], lower=0)
-        cap = self.options.max_topple
-        if cap is not None:
-            self.milp.add_row([*falling, *cuts], [*[1] * len(falling), *[-cap] * len(cuts)], upper=0)
+        if self.cap is not None:
+            self.milp.add_row([*falling, *cuts], [*[1] * len(falling), *[-self.cap] * len(cuts)], upper=0)
 
     def _columns(self, kinds: tuple[str, ...], block: int, layers: slice) -> list[int]:
         found = np.concatenate([self.edges[kind][block, layers] for kind in kinds])
@@ -239,17 +174,17 @@ class EventsBuilder:
 
     def _leave_and_arrive_once(self) -> None:
         last = self.horizon - 1
-        for block in range(len(self.problem.blocks)):
-            if block not in self.problem.lying:
+        for block in range(len(self.blocks)):
+            if block not in self.blocks.lying:
                 columns = self._left(block, last)
                 self.milp.add_row(columns, [1] * len(columns), lower=1, upper=1)
-            if block in self.problem.placed:
+            if block in self.blocks.placed:
                 columns = self._arrived(block, last)
                 self.milp.add_row(columns, [1] * len(columns), lower=1, upper=1)
 
     def _return_after_leaving(self) -> None:
         """What comes back in a layer was off the stacks at the end of the layer before."""
-        for block in sorted(self.problem.placed - self.problem.lying):
+        for block in sorted(self.blocks.placed - self.blocks.lying):
             for away, kind in ((self.rests, "from_aside"), (self.lies, "from_table")):
                 for layer in range(self.horizon):
                     came = self._columns((kind,), block, slice(layer, layer + 1))
@@ -276,8 +211,8 @@ class EventsBuilder:
             self.milp.add_row([*there, *before], [*[1] * len(there), *[-1] * len(before)], upper=0)
 
     def _clear_before_filling(self) -> None:
-        lowest = {at: pile[0] for at, pile in self.problem.piles}
-        for location, chain in self.problem.chains:
+        lowest = {at: pile[0] for at, pile in self.blocks.piles}
+        for location, chain in self.blocks.chains:
             if location is None or location not in lowest:
                 continue
             for layer in range(self.horizon):
@@ -286,8 +221,8 @@ class EventsBuilder:
                 self.milp.add_row([*there, *gone], [*[1] * len(there), *[-1] * len(gone)], upper=0)
 
     def _one_action_a_stack(self) -> None:
-        filled = {at: chain for at, chain in self.problem.chains if at is not None}
-        emptied = dict(self.problem.piles)
+        filled = {at: chain for at, chain in self.blocks.chains if at is not None}
+        emptied = dict(self.blocks.piles)
         for location in sorted({*filled, *emptied}):
             for layer in range(self.horizon):
                 columns = self._actions_on(location, filled.get(location, ()), emptied.get(location, ()), layer)
@@ -307,7 +242,7 @@ class EventsBuilder:
 
         `a` waits for `b` where a direct move of `b` must come before one of `a`.
         """
-        direct = [b for b in range(len(self.problem.blocks)) if self.edges["direct"][b, 0] >= 0]
+        direct = [b for b in range(len(self.blocks)) if self.edges["direct"][b, 0] >= 0]
         if len(direct) > MOST_CIRCLES:
             return
         before = {a: {b for b in direct if b != a and self._comes_before(a, b)} for a in direct}
@@ -364,12 +299,9 @@ def read_events(model: LayeredModel, vector: Floats) -> list[Event]:
     """Return the edges that a solution takes, by layer; within one, what frees room before what takes it."""
     events = []
     for kind, columns in model.edges.items():
-        if kind == "fall":
-            continue
-        taken = (columns >= 0) & (vector[columns] > 0.5)
-        events += [Event(int(layer), kind, int(block)) for block, layer in np.argwhere(taken)]
+        if kind != "fall":
+            events += [Event(layer, kind, block) for block, layer in taken(columns, vector)]
     for location, cuts in model.topples.items():
-        taken = vector[cuts] > 0.5
-        events += [Event(int(layer), "topple", int(cut), location) for cut, layer in np.argwhere(taken)]
+        events += [Event(layer, "topple", cut, location) for cut, layer in taken(cuts, vector)]
     order = {"from_aside": 0, "topple": 1, "from_table": 2, "direct": 3, "aside": 4}
     return sorted(events, key=lambda event: (event.layer, order[event.kind]))

@@ -9,9 +9,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from smash.planners.layered.events import Event, LayeredProblem
+from smash.planners.layered.blocks import MovingBlocks
+from smash.planners.layered.draft import Draft
+from smash.planners.layered.events import Event
 from smash.problem.actions.topple import Topple
-from smash.problem.model import TABLE, Action, Instance, Pick, Place, State
+from smash.problem.model import Action
+from smash.problem.problem import Problem
 
 NEVER = 1 << 30
 
@@ -27,85 +30,74 @@ class _Chain:
 class Packing:
     """Turns the events of one solution into actions."""
 
-    def __init__(self, instance: Instance, problem: LayeredProblem, events: Sequence[Event]) -> None:
-        self.instance = instance
-        self.problem = problem
+    def __init__(self, problem: Problem, blocks: MovingBlocks, events: Sequence[Event]) -> None:
+        self.instance = problem.instance
+        self.blocks = blocks
         self.events = events
-        located = len(problem.demands.build)
-        bottoms = [False] * located + [chain.bottom for chain in problem.demands.floating]
-        self.chains = [_Chain(at, bottom) for (at, _), bottom in zip(problem.chains, bottoms, strict=True)]
-        self.chain_of = {block: number for number, (_, chain) in enumerate(problem.chains) for block in chain}
-        self.pile_of = {block: at for at, pile in problem.piles for block in pile}
+        self.draft = Draft(problem)
+        self.resting: dict[str, list[int]] = {location: [] for location in self.instance.locations}
+        located = len(blocks.demands.build)
+        bottoms = [False] * located + [chain.bottom for chain in blocks.demands.floating]
+        self.chains = [_Chain(at, bottom) for (at, _), bottom in zip(blocks.chains, bottoms, strict=True)]
+        self.chain_of = {block: number for number, (_, chain) in enumerate(blocks.chains) for block in chain}
+        self.pile_of = {block: at for at, pile in blocks.piles for block in pile}
         self.returns = {e.subject: i for i, e in enumerate(events) if e.kind == "from_aside"}
 
     def actions(self) -> tuple[Action, ...] | None:
-        """Return the plan, or None where some block finds no place to rest."""
-        state = State.start_of(self.instance)
-        where = {block: at for at, pile in state.piles.items() for block in pile}
-        resting: dict[str, list[int]] = {location: [] for location in self.instance.locations}
-        plan: list[Action] = []
+        """Return the plan, or None where some block finds no place to rest.
+
+        Raises:
+            IllegalAction: where the events are no plan.
+        """
         for index, event in enumerate(self.events):
             if event.kind == "topple":
                 assert event.location is not None
-                cut = self.problem.demands.keep[event.location] + event.subject
-                if len(state.piles[event.location]) <= cut:
-                    continue  # nothing was left to fall: the plan is cheaper without it
-                plan.append(Topple(event.location, cut + 1))
-                for block in state.piles[event.location][cut:]:
-                    where[block] = TABLE
-                del state.piles[event.location][cut:]
+                self.draft.add(Topple(event.location, self.blocks.demands.keep[event.location] + event.subject + 1))
                 continue
-            block = self.problem.blocks[event.subject]
-            source = where.get(block, TABLE)
-            target = self._target(index, event, state, resting, source)
+            block = self.blocks.names[event.subject]
+            source = self.draft.place_of(block)
+            target = self._target(index, event, source)
             if target is None:
                 return None
             if event.kind == "from_aside":
-                resting[source].remove(event.subject)
+                self.resting[source].remove(event.subject)
             elif event.kind == "aside":
-                resting[target].append(event.subject)
-            if source != TABLE:
-                state.piles[source].remove(block)
-            state.piles[target].append(block)
-            where[block] = target
-            plan += [Pick(block, source), Place(block, target)]
-        return tuple(plan)
+                self.resting[target].append(event.subject)
+            self.draft.move(block, source, target)
+        return self.draft.actions
 
-    def _target(self, index: int, event: Event, state: State, resting: dict[str, list[int]], source: str) -> str | None:
+    def _target(self, index: int, event: Event, source: str) -> str | None:
         if event.kind == "aside":
             if event.location is not None:
                 return event.location
             until = self.returns.get(event.subject, NEVER)
-            return self._resting_place(index, until, state, resting, source)
+            return self._resting_place(index, until, source)
         chain = self.chains[self.chain_of[event.subject]]
         if chain.location is None:
-            chain.location = self._free_location(index, chain.bottom, state, resting, source)
+            chain.location = self._free_location(index, chain.bottom, source)
         return chain.location
 
-    def _resting_place(
-        self, index: int, until: int, state: State, resting: dict[str, list[int]], source: str
-    ) -> str | None:
+    def _resting_place(self, index: int, until: int, source: str) -> str | None:
         fits = []
         for order, location in enumerate(self.instance.locations):
-            free_until = self._next_use(index, location, resting)
+            free_until = self._next_use(index, location)
             if location != source and (free_until > until or free_until == until == NEVER):
-                stacked = location in self.instance.stacks or bool(state.piles[location])
+                stacked = location in self.instance.stacks or bool(self.draft.state.piles[location])
                 fits.append((free_until, stacked, order, location))
         return min(fits)[-1] if fits else None
 
-    def _free_location(
-        self, index: int, bottom: bool, state: State, resting: dict[str, list[int]], source: str
-    ) -> str | None:
-        for location in sorted(self.instance.locations, key=lambda at: bool(state.piles[at])):
-            if bottom and state.piles[location]:
+    def _free_location(self, index: int, bottom: bool, source: str) -> str | None:
+        piles = self.draft.state.piles
+        for location in sorted(self.instance.locations, key=lambda at: bool(piles[at])):
+            if bottom and piles[location]:
                 return None
-            if location != source and self._next_use(index, location, resting) == NEVER:
+            if location != source and self._next_use(index, location) == NEVER:
                 return location
         return None
 
-    def _next_use(self, index: int, location: str, resting: dict[str, list[int]]) -> int:
+    def _next_use(self, index: int, location: str) -> int:
         """Return the index of the next event that touches what lies on top of `location`, or `NEVER`."""
-        soonest = min((self.returns.get(block, NEVER) for block in resting[location]), default=NEVER)
+        soonest = min((self.returns.get(block, NEVER) for block in self.resting[location]), default=NEVER)
         for later in range(index + 1, min(soonest, len(self.events))):
             if self._touches(self.events[later], location):
                 return later

@@ -7,6 +7,7 @@ from smash.planners.flow.arcs import WAIT, arcs_of, count_arcs, reaches_of
 from smash.planners.flow.scope import scope_of
 from smash.planners.flow.warm import motion_of
 from smash.problem import Law, PlanOptions, StacksGoal, make_instance
+from smash.problem.problem import Problem
 from tests.cheapest import cheapest_plan
 from tests.strategies import instances, plan_options
 
@@ -15,7 +16,7 @@ from tests.strategies import instances, plan_options
 @given(instances(min_blocks=1, max_blocks=4), plan_options(), st.integers(0, 12))
 def test_there_are_as_many_arcs_as_were_counted_and_no_two_are_alike(instance, options, horizon):
     assume(not Law(instance).check([]).accepted)
-    scope = scope_of(instance, options)
+    scope = scope_of(Problem(instance, options))
     reaches = reaches_of(scope)
     arcs = arcs_of(scope, reaches, horizon)
     assert len(arcs) == count_arcs(scope, reaches, horizon)
@@ -27,7 +28,7 @@ def test_there_are_as_many_arcs_as_were_counted_and_no_two_are_alike(instance, o
 @given(instances(min_blocks=1, max_blocks=4), plan_options(), st.integers(1, 12))
 def test_each_arc_lies_on_a_way_of_its_pebble_that_fits_the_horizon(instance, options, horizon):
     assume(not Law(instance).check([]).accepted)
-    scope = scope_of(instance, options)
+    scope = scope_of(Problem(instance, options))
     reaches = reaches_of(scope)
     arcs = arcs_of(scope, reaches, horizon)
     for pebble, edge, tail, head, step in zip(arcs.pebble, arcs.edge, arcs.tail, arcs.head, arcs.step, strict=True):
@@ -44,8 +45,8 @@ def test_each_arc_lies_on_a_way_of_its_pebble_that_fits_the_horizon(instance, op
 def test_every_step_of_a_cheapest_plan_is_an_arc(instance, options, spare):
     best = cheapest_plan(instance, options)
     assume(best is not None and best[0])
-    scope = scope_of(instance, options)
-    motion = motion_of(scope, instance, best[1])
+    scope = scope_of(Problem(instance, options))
+    motion = motion_of(Problem(instance, options), scope, best[1])
     arcs = arcs_of(scope, reaches_of(scope), motion.steps + spare)
     there = set(zip(arcs.pebble.tolist(), arcs.step.tolist(), arcs.tail.tolist(), arcs.head.tolist(), strict=True))
     for step, (before, after) in enumerate(zip(motion.layers, motion.layers[1:], strict=False)):
@@ -57,7 +58,7 @@ def test_a_horizon_shorter_than_the_shortest_way_has_no_arcs():
     instance = make_instance(
         name="x", blocks="a", stacks=["s1", "s2"], start={"s1": "a"}, goal=StacksGoal({"s2": ("a",)})
     )
-    scope = scope_of(instance, PlanOptions(topple=False))
+    scope = scope_of(Problem(instance, PlanOptions(topple=False)))
     reaches = reaches_of(scope)
     assert reaches[0].shortest == 1
     assert count_arcs(scope, reaches, 0) == 0

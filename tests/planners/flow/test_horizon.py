@@ -8,6 +8,7 @@ from smash.planners.flow.horizon import step_bound
 from smash.planners.flow.scope import scope_of
 from smash.planners.flow.warm import motion_of
 from smash.problem import PlanOptions, StacksGoal, make_instance
+from smash.problem.problem import Problem
 from smash.problem.sets.generators import generate
 from tests.cheapest import cheapest_plan
 from tests.strategies import instances, plan_options
@@ -19,9 +20,9 @@ def test_a_cheapest_plan_fits_the_steps_of_its_cost_and_costs_no_less_than_the_l
     best = cheapest_plan(instance, options)
     assume(best is not None and best[0])
     cost, actions = best
-    scope = scope_of(instance, options)
-    bound = step_bound(scope, options)
-    assert motion_of(scope, instance, actions).steps <= bound.steps(cost)
+    scope = scope_of(Problem(instance, options))
+    bound = step_bound(Problem(instance, options), scope)
+    assert motion_of(Problem(instance, options), scope, actions).steps <= bound.steps(cost)
     assert bound.least_cost <= cost
 
 
@@ -37,14 +38,15 @@ def test_a_pile_on_a_buffer_may_have_to_be_put_on_a_stack_and_toppled(blocks, op
     )
     cost, actions = cheapest_plan(instance)
     assert cost == optimum
-    scope = scope_of(instance, PlanOptions())
-    steps = motion_of(scope, instance, actions).steps
+    scope = scope_of(Problem(instance))
+    steps = motion_of(Problem(instance), scope, actions).steps
     assert steps <= bound_of(instance, PlanOptions()).steps(cost)
     assert bound_of(instance, PlanOptions()).fitting_cost(steps - 1, 30) < cost
 
 
 def bound_of(instance, options):
-    return step_bound(scope_of(instance, options), options)
+    problem = Problem(instance, options)
+    return step_bound(problem, scope_of(problem))
 
 
 @pytest.mark.parametrize("topple", [True, False])

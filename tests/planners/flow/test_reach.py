@@ -7,12 +7,13 @@ from smash.planners.flow.reach import FAR, reach_of
 from smash.planners.flow.scope import scope_of
 from smash.planners.flow.warm import motion_of
 from smash.problem import PlanOptions, StacksGoal, make_instance
+from smash.problem.problem import Problem
 from tests.cheapest import cheapest_plan
 from tests.strategies import instances, plan_options
 
 
 def reach_in(instance, block, options=None):
-    scope = scope_of(instance, options or PlanOptions())
+    scope = scope_of(Problem(instance, options or PlanOptions()))
     return scope, reach_of(scope, instance.blocks.index(block))
 
 
@@ -49,8 +50,8 @@ def test_a_cheapest_plan_keeps_to_what_can_be_reached_when(instance, options):
     best = cheapest_plan(instance, options)
     if best is None or not best[0]:
         return
-    scope = scope_of(instance, options)
-    motion = motion_of(scope, instance, best[1])
+    scope = scope_of(Problem(instance, options))
+    motion = motion_of(Problem(instance, options), scope, best[1])
     for pebble in scope.moving:
         reach = reach_of(scope, pebble)
         assert reach.shortest <= motion.steps

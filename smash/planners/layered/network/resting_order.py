@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 from dataclasses import dataclass
 
-from smash.planners.layered.family.moving import Moving
+from smash.planners.layered.network.moving import Moving
 from smash.planners.milp.arrays import Ints, MilpBuilder
 
 
@@ -59,9 +59,8 @@ def _keep_in_lift(
     lifted, locations = columns.lifted, len(moving.places.locations)
     pile = moving.piles[at]
     waiting = lower in pile and upper in pile and pile.index(lower) < pile.index(upper)
-    chained = any(
-        lower in chain and upper in chain and chain.index(lower) > chain.index(upper) for chain in moving.chains
-    )
+    chains = [chain for _, chain in moving.blocks.chains]
+    chained = any(lower in chain and upper in chain and chain.index(lower) > chain.index(upper) for chain in chains)
     for target in range(locations):
         both = _both(lifted[:, :, at, target], pair)
         if both is not None:

@@ -6,13 +6,17 @@ from time import perf_counter
 import pytest
 from hypothesis import given, settings
 
-from smash.planners.layered import LayeredPlanner, planner
-from smash.planners.layered.events import LayeredProblem, build_layered
-from smash.planners.layered.positions import build_positions
+from smash.planners.layered import LayeredPlanner
+from smash.planners.layered.blocks import MovingBlocks
+from smash.planners.layered.events import build_layered
+from smash.planners.layered.plain_positions import build_plain_positions
 from smash.planners.layered.resting import build_resting
+from smash.planners.milp import solving
 from smash.planners.milp.arrays import OutOfTime
 from smash.planners.protocol import SolveOptions
 from smash.problem import Law
+from smash.problem.problem import Problem
+from smash.problem.sets.generators import generate
 from smash.problem.sets.suites import read_suite
 from tests.oracle import optimal_cost
 from tests.strategies import instances, plan_options
@@ -77,13 +81,13 @@ def test_a_warm_start_by_itself_starts_cold():
 
 @pytest.mark.parametrize("late", [True, False])
 def test_building_stops_at_its_deadline(late):
-    instance, options = read_suite("multi-6")[0], SolveOptions()
-    problem = LayeredProblem.of(instance, options)
+    problem = Problem(read_suite("multi-6")[0])
+    blocks = MovingBlocks.of(problem)
     deadline = perf_counter() if late else inf
     builds = (
-        lambda: build_layered(problem, options, 8, deadline).milp,
-        lambda: build_resting(instance, problem, options, 8, 0, None, deadline).layered.milp,
-        lambda: build_positions(instance, problem.demands, options, 8, 0, None, deadline).milp,
+        lambda: build_layered(problem, blocks, 8, deadline).milp,
+        lambda: build_resting(problem, blocks, 8, 0, None, deadline).milp,
+        lambda: build_plain_positions(problem, 8, 0, None, deadline).milp,
     )
     for build in builds:
         if late:
@@ -94,7 +98,12 @@ def test_building_stops_at_its_deadline(late):
 
 
 def test_what_takes_too_long_to_build_is_left_out(monkeypatch):
-    monkeypatch.setattr(planner, "BUILD_SHARE", 0.0)
+    monkeypatch.setattr(solving, "BUILD_SHARE", 0.0)
     result = solve(read_suite("multi-6")[0], SolveOptions())
     assert {stage["skipped"] for stage in result.details["stages"]} == {"took too long to build"}
     assert (result.status, result.lower_bound) == ("unknown", 2 * 6)
+
+
+def test_what_would_take_too_long_to_load_is_not_begun():
+    result = solve(generate("multi", 40, buffers=2, seed=5)[0], SolveOptions(topple=False), budget=0.5)
+    assert "to build" in result.details["stages"][-1]["skipped"]

@@ -1,4 +1,4 @@
-"""The relaxation of the family's model: three nodes a block, and the places where it rests in between.
+"""The relaxation of `positions`: three nodes a block, and the places where it rests in between.
 
 As in `smash.planners.layered.events`, gravity shrinks a chain of height-indexed nodes: a block *waits* where it
 starts until its first removal, *rests* on any location, deck or the table region, and is *home* after its last
@@ -17,13 +17,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from smash.planners.layered.family.carriers import CarrierColumns, add_carriers
-from smash.planners.layered.family.moving import Moving
-from smash.planners.layered.family.places import NO_EDGE, Places
-from smash.planners.layered.family.resting_order import OrderColumns, add_resting_order
+from smash.planners.layered.network.carriers import CarrierColumns, add_carriers
+from smash.planners.layered.network.moving import Moving
+from smash.planners.layered.network.places import NO_EDGE, free
+from smash.planners.layered.network.resting_order import OrderColumns, add_resting_order
+from smash.planners.layered.rows import balance, bound_cost, fix, no_idle_layers
 from smash.planners.milp.arrays import Ints, Milp, MilpBuilder
-from smash.problem.model import Instance, PlanOptions
-from smash.problem.views.demands import Demands
+from smash.planners.milp.columns import new_columns, priced_columns
+from smash.problem.problem import Problem
 
 STARTS_TAKEN, REST_TAKEN = 0, 1
 """Kinds of topples and lifts: those that take blocks which wait where they started, those of resting blocks alone."""
@@ -34,17 +35,14 @@ class RelaxedModel:
     """The MILP and the meaning of its columns; -1 where there is no such column.
 
     Axes: t layers, b moving blocks, l locations, d decks. Sources of a move are the places and, last, the start;
-    targets are the locations and decks, then home, then anywhere (`smash.planners.layered.family.places`).
+    targets are the locations and decks, then home, then anywhere (`smash.planners.layered.network.moving`).
 
     `move`: (t, b, sources, targets); `topple`: (t, l, kinds); `fall`: (t, b, l + start); `carry`: (t, d, d);
     `lift`: (t, kinds, l, l); `lifted`: (t, b, l + start, l + home + anywhere).
     """
 
-    places: Places
-    blocks: tuple[str, ...]
-    origin: tuple[int, ...]
-    target: tuple[int, ...]
     milp: Milp
+    moving: Moving
     move: Ints
     topple: Ints
     fall: Ints
@@ -54,9 +52,8 @@ class RelaxedModel:
 
 
 def build_relaxed(
-    instance: Instance,
-    demands: Demands,
-    options: PlanOptions,
+    problem: Problem,
+    moving: Moving,
     horizon: int,
     lower_bound: int = 0,
     upper_bound: int | None = None,
@@ -67,38 +64,37 @@ def build_relaxed(
     """Build the relaxation.
 
     Args:
-        instance: the problem.
-        demands: what its goal asks of its start.
-        options: what plans may use.
+        problem: what is planned.
+        moving: its moving blocks.
         horizon: number of layers.
         lower_bound: a proven bound on the cost of every plan, as a row.
         upper_bound: only plans cheaper than this are of interest (None: all are).
         deadline: when to give up [s, clock of `perf_counter`].
-        ordered: keep the order of what rests on one another (`smash.planners.layered.family.resting_order`).
+        ordered: keep the order of what rests on one another (`smash.planners.layered.network.resting_order`).
 
     Raises:
         OutOfTime: where the deadline has passed.
     """
-    builder = _Builder(instance, demands, options, horizon, deadline)
+    builder = _Builder(problem, moving, horizon, deadline)
     builder.add_rows()
     if ordered:
         columns = OrderColumns(builder.move, builder.fall, builder.lifted, builder.rests)
         add_resting_order(builder.milp, builder.moving, columns)
-    return builder.finish(lower_bound, upper_bound)
+    bound_cost(builder.milp, lower_bound, upper_bound)
+    edges = (builder.move, builder.topple, builder.fall, builder.carry, builder.lift, builder.lifted)
+    return RelaxedModel(builder.milp.build(), moving, *edges)
 
 
 class _Builder:
     """Adds columns, then rows, one method a constraint."""
 
-    def __init__(
-        self, instance: Instance, demands: Demands, options: PlanOptions, horizon: int, deadline: float
-    ) -> None:
-        self.moving = moving = Moving.of(instance, demands, options)
-        self.places, self.blocks = moving.places, moving.blocks
-        self.piles, self.chains, self.placed = moving.piles, moving.chains, moving.placed
+    def __init__(self, problem: Problem, moving: Moving, horizon: int, deadline: float) -> None:
+        self.moving, self.places, self.blocks = moving, moving.places, moving.blocks
+        self.piles, self.chains = moving.piles, [chain for _, chain in moving.blocks.chains]
+        self.placed = sorted(moving.blocks.placed)
         self.origin, self.target, self.anywhere = moving.origin, moving.target, moving.anywhere
         self.start, self.home = moving.start, moving.home
-        self.cap = options.max_topple
+        self.cap = problem.options.max_topple
         self.layers = horizon
         self.milp = MilpBuilder(deadline)
 
@@ -113,94 +109,64 @@ class _Builder:
         self._topples()
         self._lifts()
         self._one_action()
-        self._no_idle_layers()
-
-    def finish(self, lower_bound: int, upper_bound: int | None) -> RelaxedModel:
-        self._cost(lower_bound, upper_bound)
-        return RelaxedModel(
-            self.places,
-            self.blocks,
-            self.origin,
-            self.target,
-            self.milp.build(),
-            self.move,
-            self.topple,
-            self.fall,
-            self.carry,
-            self.lift,
-            self.lifted,
-        )
-
-    def _priced(self, repeat: tuple[int, ...], price: Ints) -> Ints:
-        """Return columns of shape `repeat` + the shape of `price`, -1 where the price says that there is no edge."""
-        columns = np.full((*repeat, *price.shape), -1, dtype=np.int64)
-        there = np.broadcast_to(price >= 0, columns.shape)
-        columns[there] = self.milp.add_columns(int(there.sum()), cost=np.broadcast_to(price, columns.shape)[there])
-        return columns
+        most = len(self.blocks) + len(self.places.locations) + len(self.places.carriers)
+        no_idle_layers(self.milp, (self.move, self.topple, self.carry, self.lift), most)
 
     def _states(self, *shape: int) -> Ints:
         """Return columns of what holds before the first layer and after each: sums of binaries."""
-        whole = (self.layers + 1, *shape)
-        return self.milp.add_columns(math.prod(whole), integral=False).reshape(whole)
+        return new_columns(self.milp, self.layers + 1, *shape, integral=False)
 
     def _add_columns(self) -> None:
         places, layers, n = self.places, (self.layers,), len(self.blocks)
         locations, decks = len(places.locations), len(places.decks)
         self.waits, self.lies, self.is_home = self._states(n), self._states(n), self._states(n)
         self.rests, self.on, self.stands = self._states(n, locations), self._states(n, decks), self._states(decks)
-        self.move = self._priced(layers, self.moving.transfers())
+        self.move = priced_columns(self.milp, layers, self.moving.transfers())
         price = np.full((locations, 2), NO_EDGE, dtype=np.int64)
         price[: places.toppled] = places.topple
-        self.topple = self._priced(layers, price)
-        self.fall = self._priced(layers, self.moving.falls())
-        self.carry = self._priced(layers, places.carry)
-        self.ride = self._priced((self.layers, n), np.where(places.carry >= 0, 0, NO_EDGE))
-        self.lift = self._priced(layers, np.array([places.lift, places.lift]))
-        self.lifted = self._priced(layers, self.moving.lifts())
-
-    def _fix(self, columns: Ints, chosen: list[int]) -> None:
-        sides = np.zeros(columns.size)
-        sides[chosen] = 1
-        self.milp.add_sums([(columns.reshape(-1, 1), 1.0)], lower=sides, upper=sides)
+        self.topple = priced_columns(self.milp, layers, price)
+        self.fall = priced_columns(self.milp, layers, self.moving.falls())
+        self.carry = priced_columns(self.milp, layers, places.carry)
+        self.ride = priced_columns(self.milp, (self.layers, n), free(places.carry))
+        self.lift = priced_columns(self.milp, layers, np.array([places.lift, places.lift]))
+        self.lifted = priced_columns(self.milp, layers, self.moving.lifts())
 
     def _start_and_end(self) -> None:
         decks = len(self.places.decks)
         held, standing = [], []
-        for number, deck in enumerate(self.places.decks):
-            carrier = self.places.carriers[deck.carrier]
-            if carrier.at == deck.station:
-                standing.append(number)
-                held += [self.blocks.index(block) * decks + number for block in carrier.holds]
+        for number, carrier in self.places.occupied():
+            standing.append(number)
+            held += [self.blocks.names.index(block) * decks + number for block in carrier.holds]
         self._fix(self.waits[0], [block for block, at in enumerate(self.origin) if at >= 0])
-        self._fix(self.lies[0], list(self.moving.lying))
+        self._fix(self.lies[0], list(self.blocks.lying))
         self._fix(self.rests[0], [])
         self._fix(self.on[0], held)
         self._fix(self.stands[0], standing)
         self._fix(self.is_home[0], [])
-        self._fix(self.is_home[-1], list(self.placed))
+        self._fix(self.is_home[-1], self.placed)
         self._fix(self.waits[-1], [])
+
+    def _fix(self, columns: Ints, chosen: list[int]) -> None:
+        """Set the chosen of some columns, by their place in the flat array, and no others."""
+        values = np.zeros(columns.size)
+        values[chosen] = 1
+        fix(self.milp, columns, values)
 
     def _conserve(self) -> None:
         """Conservation of every block at every node (decks apart); a block takes part in one action a layer."""
         locations, table = len(self.places.locations), self.places.table
         move, lifted, fall = self.move, self.lifted, self.fall
         out = [move[:, :, self.start], lifted[:, :, locations], fall[:, :, locations]]
-        self._balance(self.waits, [], out)
+        balance(self.milp, self.waits, [], out)
         into = [np.swapaxes(move, 2, 3)[:, :, :locations], np.swapaxes(lifted, 2, 3)[:, :, :locations]]
-        self._balance(self.rests, into, [part[:, :, :locations] for part in (move, lifted, fall)])
-        self._balance(self.lies, [fall], [move[:, :, table]])
-        self._balance(self.is_home, [move[:, :, :, self.home], lifted[:, :, :, locations]], [])
+        balance(self.milp, self.rests, into, [part[:, :, :locations] for part in (move, lifted, fall)])
+        balance(self.milp, self.lies, [fall], [move[:, :, table]])
+        balance(self.milp, self.is_home, [move[:, :, :, self.home], lifted[:, :, :, locations]], [])
         rows = self.layers * len(self.blocks)
         self.milp.add_sums([(part.reshape(rows, -1), 1.0) for part in (move, lifted, fall, self.ride)], upper=1)
 
-    def _balance(self, state: Ints, into: list[Ints], out: list[Ints]) -> None:
-        rows = state[1:].size
-        terms = [(state[1:].reshape(rows, 1), 1.0), (state[:-1].reshape(rows, 1), -1.0)]
-        terms += [(part.reshape(rows, -1), -1.0) for part in into] + [(part.reshape(rows, -1), 1.0) for part in out]
-        self.milp.add_sums(terms, lower=0, upper=0)
-
     def _carriers(self) -> None:
-        inside = slice(len(self.places.locations), self.places.table)
+        inside = self.places.inside
         into, out = np.swapaxes(self.move, 2, 3)[:, :, inside], self.move[:, :, inside]
         add_carriers(self.milp, self.places, CarrierColumns(self.on, self.stands, self.carry, self.ride, into, out))
 
@@ -322,16 +288,3 @@ class _Builder:
             self.milp.add_sums([(part.reshape(self.layers, -1), 1.0) for part in parts if part.size], upper=1)
         if self.places.lifted:
             self.milp.add_sums([(self.lift.reshape(self.layers, -1), 1)], upper=1)
-
-    def _no_idle_layers(self) -> None:
-        """Symmetry: a layer in which nothing happens is followed by such layers only."""
-        most = len(self.blocks) + len(self.places.locations) + len(self.places.carriers)
-        parts = [part.reshape(self.layers, -1) for part in (self.move, self.topple, self.carry, self.lift)]
-        later, sooner = [(part[1:], 1.0) for part in parts], [(part[:-1], -float(most)) for part in parts]
-        self.milp.add_sums([*later, *sooner], upper=0)
-
-    def _cost(self, lower_bound: int, upper_bound: int | None) -> None:
-        prices = self.milp.costs()
-        columns = np.flatnonzero(prices)
-        upper = np.inf if upper_bound is None else upper_bound - 1
-        self.milp.add_row(columns, prices[columns], lower=lower_bound, upper=upper)

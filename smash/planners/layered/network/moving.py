@@ -12,66 +12,52 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from smash.planners.layered.family.places import NO_EDGE, Places
+from smash.planners.layered.blocks import MovingBlocks
+from smash.planners.layered.network.places import NO_EDGE, Places
 from smash.planners.milp.arrays import Ints
-from smash.problem.model import Instance, OnGoal, PlanOptions
-from smash.problem.views.demands import Demands
+from smash.problem.model import OnGoal
+from smash.problem.problem import Problem
 
 
 @dataclass(frozen=True, slots=True)
 class Moving:
-    """Moving blocks by number.
+    """The moving blocks among the places.
 
     Attributes:
         places: the places.
-        blocks: their names.
-        piles: per location the blocks that leave it, bottom first.
-        chains: the goal chains, bottom first.
-        placed: the blocks with a goal.
-        lying: those that lie in the table region at the start.
-        held: those that are on a carrier at the start, with its number.
+        blocks: the blocks by number, their piles and chains.
+        piles: per location, by its number, the blocks that leave it, bottom first.
         origin: per block the location where it waits at the start, -1: it lies or is held.
         target: per block the location of its goal, -1: it has none, or any location serves (`anywhere`).
         anywhere: whether the goal names no locations (an `on` goal).
     """
 
     places: Places
-    blocks: tuple[str, ...]
+    blocks: MovingBlocks
     piles: tuple[tuple[int, ...], ...]
-    chains: tuple[tuple[int, ...], ...]
-    placed: tuple[int, ...]
-    lying: tuple[int, ...]
-    held: dict[int, int]
     origin: tuple[int, ...]
     target: tuple[int, ...]
     anywhere: bool
 
     @classmethod
-    def of(cls, instance: Instance, demands: Demands, options: PlanOptions) -> Moving:
-        """Number the moving blocks of an instance."""
-        places = Places.of(instance, options)
-        lying = [block for block in instance.table if block in demands.placed]
-        held = {block: number for number, carrier in enumerate(instance.carriers) for block in carrier.holds}
-        leaving = [demands.leaving[at] for at in places.locations]
-        blocks = (*(block for pile in leaving for block in pile), *lying, *held)
-        number = {block: index for index, block in enumerate(blocks)}
-        anywhere = isinstance(instance.goal, OnGoal)
+    def of(cls, problem: Problem) -> Moving:
+        """Work out where the moving blocks of a problem start and end."""
+        places, blocks = Places.of(problem), MovingBlocks.of(problem)
+        anywhere = isinstance(problem.instance.goal, OnGoal)
         origin, target = [NO_EDGE] * len(blocks), [NO_EDGE] * len(blocks)
-        for at, pile in enumerate(leaving):
+        number = {location: at for at, location in enumerate(places.locations)}
+        for location, pile in blocks.piles:
             for block in pile:
-                origin[number[block]] = at
-        for at, location in enumerate(places.locations):
-            for block in () if anywhere else demands.build.get(location, ()):
-                target[number[block]] = at
-        chains = [*demands.build.values(), *(chain.blocks for chain in demands.floating)]
+                origin[block] = number[location]
+        for end, chain in blocks.chains:
+            if end is not None and not anywhere:
+                for block in chain:
+                    target[block] = number[end]
+        leaving = dict(blocks.piles)
         return cls(
             places=places,
             blocks=blocks,
-            piles=tuple(tuple(number[block] for block in pile) for pile in leaving),
-            chains=tuple(tuple(number[block] for block in chain) for chain in chains),
-            placed=tuple(index for index, block in enumerate(blocks) if block in demands.placed),
-            lying=tuple(number[block] for block in lying),
-            held={number[block]: carrier for block, carrier in held.items()},
+            piles=tuple(leaving.get(location, ()) for location in places.locations),
             origin=tuple(origin),
             target=tuple(target),
             anywhere=anywhere,
@@ -98,7 +84,7 @@ class Moving:
         for block, origin in enumerate(self.origin):
             for source in range(self.start + (origin >= 0)):
                 prices = self.places.transfer[origin if source == self.start else source]
-                if block in self.placed:
+                if block in self.blocks.placed:
                     table[block, source, : self.home] = prices[: self.home]
                     table[block, source, self.home] = self._home_price(block, prices)
                 elif source == self.start:
@@ -127,11 +113,11 @@ class Moving:
                 there = self.places.lift[at] >= 0
                 if not there.any():
                     continue
-                if block in self.placed or source == locations:
+                if block in self.blocks.placed or source == locations:
                     table[block, source, :locations] = np.where(there, 0, NO_EDGE)
-                if block in self.placed and at != self.target[block]:
+                if block in self.blocks.placed and at != self.target[block]:
                     table[block, source, locations] = 0
-                if block not in self.placed and source != locations:
+                if block not in self.blocks.placed and source != locations:
                     table[block, source, locations + 1] = 0
         return table
 

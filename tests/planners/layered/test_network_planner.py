@@ -1,4 +1,4 @@
-"""The layered model of the family: with carriers, lifts and costs its proofs are uniform-cost search's."""
+"""The layered models on the network of places: their proofs are those of uniform-cost search."""
 
 from pathlib import Path
 
@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given, settings
 
 from smash.planners.layered import LayeredPlanner
-from smash.planners.layered.family.relaxed import build_relaxed
+from smash.planners.layered.network.moving import Moving
+from smash.planners.layered.network.relaxed import build_relaxed
 from smash.planners.milp.solvers import highs
 from smash.planners.protocol import Settings, SolveOptions, why_unsupported
 from smash.problem import (
@@ -23,11 +24,10 @@ from smash.problem import (
 )
 from smash.problem.files.instances import read_instance
 from smash.problem.problem import Problem
-from smash.problem.views.demands import demands_of
 from tests.cheapest import cheapest_plan
 from tests.strategies import family_instances, family_options
 
-SCOOP = Path(__file__).parents[2] / "examples" / "scoop.json"
+SCOOP = Path(__file__).parents[3] / "examples" / "scoop.json"
 
 
 def solve(instance, options, budget=20.0, **more):
@@ -67,11 +67,11 @@ def test_what_is_proven_is_true_for_many(instance, options):
 @settings(max_examples=100, deadline=None)
 @given(family_instances(max_blocks=4), family_options())
 def test_the_relaxation_holds_the_cheapest_plan(ordered, instance, options):
-    demands, found = demands_of(instance), cheapest_plan(instance, options)
-    if found is None or demands.met:
+    problem, found = Problem(instance, options), cheapest_plan(instance, options)
+    if found is None or problem.demands.met:
         return
     layers = sum(not isinstance(action, Place) for action in found[1])
-    model = build_relaxed(instance, demands, options, layers, upper_bound=found[0] + 1, ordered=ordered)
+    model = build_relaxed(problem, Moving.of(problem), layers, upper_bound=found[0] + 1, ordered=ordered)
     result = highs.solve(model.milp, time_limit=10.0)
     assert result.status != "infeasible"
     assert result.bound <= found[0] + 0.5

@@ -6,15 +6,22 @@ piles are the model's business, not theirs.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from smash.planners.milp.arrays import Ints
-from smash.problem.actions.registry import kinds_of
-from smash.problem.model import TABLE, Carrier, Instance, PlanOptions
+from smash.problem.actions.carry import Carry
+from smash.problem.model import TABLE, Carrier, Instance
+from smash.problem.problem import Problem
 
 NO_EDGE = -1
+
+
+def free(price: Ints) -> Ints:
+    """Return 0 where there is an edge, whatever it costs; `NO_EDGE` elsewhere."""
+    return np.where(price >= 0, 0, NO_EDGE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,9 +59,9 @@ class Places:
     lifted: int
 
     @classmethod
-    def of(cls, instance: Instance, options: PlanOptions) -> Places:
-        """Work out the places of an instance and the edges that `options` leave."""
-        allowed = {kind.name for kind in kinds_of(instance, options)}
+    def of(cls, problem: Problem) -> Places:
+        """Work out the places of a problem and the edges that its options leave."""
+        instance, allowed = problem.instance, {kind.name for kind in problem.kinds}
         carriers = instance.carriers
         decks = tuple(Deck(number, station) for number, one in enumerate(carriers) for station in one.stations)
         lifted = instance.capacities["lift"] if "lift" in allowed else 0
@@ -79,6 +86,22 @@ class Places:
     def table(self) -> int:
         """The number of the table region, the last place."""
         return self.count - 1
+
+    @property
+    def inside(self) -> slice:
+        """The numbers of the decks as places."""
+        return slice(len(self.locations), self.table)
+
+    def occupied(self) -> Iterator[tuple[int, Carrier]]:
+        """Yield the decks at which a carrier stands at the start, by number, with the carrier."""
+        for number, deck in enumerate(self.decks):
+            carrier = self.carriers[deck.carrier]
+            if carrier.at == deck.station:
+                yield number, carrier
+
+    def carry_to(self, deck: int) -> Carry:
+        """Return the action that brings a carrier to a deck."""
+        return Carry(self.carriers[self.decks[deck].carrier].name, self.decks[deck].station)
 
     def source(self, place: int) -> str:
         """Return what a pick or a place calls a place."""

@@ -1,4 +1,4 @@
-"""Rows of carriers, the same in both models of the family: stations, loads, capacities, and what goes along."""
+"""Rows of carriers, the same in both models with layers: stations, loads, capacities, and what goes along."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from smash.planners.layered.family.places import Places
+from smash.planners.layered.network.places import Places
 from smash.planners.milp.arrays import Ints, MilpBuilder
 
 

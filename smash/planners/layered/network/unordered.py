@@ -13,48 +13,60 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from smash.planners.layered.family.moving import Moving
-from smash.planners.layered.family.places import NO_EDGE
+from smash.planners.layered.network.moving import Moving
+from smash.planners.layered.network.places import NO_EDGE, free
 from smash.planners.milp.arrays import Ints, Milp, MilpBuilder
-from smash.problem.model import Instance, PlanOptions
+from smash.problem.problem import Problem
 
 COUNT_WEIGHT = -1.0
 """Of each action, where as many as possible are looked for."""
 
 
 @dataclass(frozen=True, slots=True)
-class Unordered:
-    """The two programs: the least cost, and the largest number of actions below a cost."""
+class UnorderedModel:
+    """The MILP; no plan is read from it."""
 
-    instance: Instance
-    options: PlanOptions
-    moving: Moving
+    milp: Milp
 
-    def cheapest(self, deadline: float = math.inf) -> Milp:
-        """Return the program whose optimum bounds the cost of every plan.
 
-        Raises:
-            OutOfTime: where the deadline has passed.
-        """
-        return _Builder(self, None, deadline).build()
+def build_cheapest(problem: Problem, moving: Moving, deadline: float = math.inf) -> UnorderedModel:
+    """Build the program whose optimum bounds the cost of every plan.
 
-    def longest(self, below: int, deadline: float = math.inf) -> Milp:
-        """Return the program whose optimum, negated, bounds the actions of a cheapest plan, if it costs less.
+    Args:
+        problem: what is planned.
+        moving: its moving blocks.
+        deadline: when to give up [s, clock of `perf_counter`].
 
-        A transfer counts one. It is infeasible where no plan costs less than `below`.
+    Raises:
+        OutOfTime: where the deadline has passed.
+    """
+    return UnorderedModel(_Builder(problem, moving, None, deadline).build())
 
-        Raises:
-            OutOfTime: where the deadline has passed.
-        """
-        return _Builder(self, below, deadline).build()
+
+def build_longest(problem: Problem, moving: Moving, below: int, deadline: float = math.inf) -> UnorderedModel:
+    """Build the program whose optimum, negated, bounds the actions of a cheapest plan, if it costs less than `below`.
+
+    A transfer counts one. It is infeasible where no plan costs less than `below`.
+
+    Args:
+        problem: what is planned.
+        moving: its moving blocks.
+        below: what the plan has to be cheaper than.
+        deadline: when to give up [s, clock of `perf_counter`].
+
+    Raises:
+        OutOfTime: where the deadline has passed.
+    """
+    return UnorderedModel(_Builder(problem, moving, below, deadline).build())
 
 
 class _Builder:
-    """Adds columns, then rows. Node and edge names as in `smash.planners.layered.family.moving`."""
+    """Adds columns, then rows. Node and edge names as in `smash.planners.layered.network.moving`."""
 
-    def __init__(self, model: Unordered, below: int | None, deadline: float) -> None:
-        self.instance, self.options, self.moving = model.instance, model.options, model.moving
-        self.places = model.moving.places
+    def __init__(self, problem: Problem, moving: Moving, below: int | None, deadline: float) -> None:
+        self.start = problem.instance.start
+        self.cap = problem.options.max_topple
+        self.moving, self.places = moving, moving.places
         self.below = below
         self.milp = MilpBuilder(deadline)
         self.prices: list[tuple[Ints, Ints]] = []
@@ -64,7 +76,7 @@ class _Builder:
         n, locations, decks = len(moving.blocks), len(places.locations), len(places.decks)
         self.move = self._edges(moving.transfers(), priced=True)
         self.fall, self.lifted = self._edges(moving.falls()), self._edges(moving.lifts())
-        self.ride = self._edges(np.broadcast_to(np.where(places.carry >= 0, 0, NO_EDGE), (n, decks, decks)))
+        self.ride = self._edges(np.broadcast_to(free(places.carry), (n, decks, decks)))
         price = np.full(locations, NO_EDGE, dtype=np.int64)
         price[: places.toppled] = places.topple
         self.topple = self._edges(price, priced=True)
@@ -97,7 +109,7 @@ class _Builder:
         """Every block leaves its start once and every node as often as it comes there; with a goal it ends at home."""
         places, moving = self.places, self.moving
         locations, table, start = len(places.locations), places.table, moving.start
-        inside = slice(locations, table)
+        inside, occupied = places.inside, [(number, places.decks[number]) for number, _ in places.occupied()]
         move, fall, lifted, ride = self.move, self.fall, self.lifted, self.ride
         rows = self.milp.add_sums
         for block, origin in enumerate(moving.origin):
@@ -108,15 +120,13 @@ class _Builder:
             went = [(part[block, :locations].reshape(locations, -1), -1.0) for part in (move, lifted, fall)]
             rows([*came, *went, (self.ends[block, :locations, None], -1.0)], lower=0, upper=0)
             on = np.zeros(len(places.decks))
-            for number, deck in enumerate(places.decks):
-                held = moving.held.get(block) == deck.carrier
-                on[number] = -1.0 if held and places.carriers[deck.carrier].at == deck.station else 0.0
+            on[[number for number, deck in occupied if moving.blocks.held.get(block) == deck.carrier]] = -1.0
             came = [(move[block].T[inside], 1.0), (ride[block].T, 1.0)]
             went = [(move[block, inside], -1.0), (ride[block], -1.0), (self.ends[block, locations:, None], -1.0)]
             if len(on):
                 rows([*came, *went], lower=on, upper=on)
-            if block in moving.placed:
-                lies = -1.0 if block in moving.lying else 0.0
+            if block in moving.blocks.placed:
+                lies = -1.0 if block in moving.blocks.lying else 0.0
                 terms = [(fall[block].reshape(1, -1), 1.0), (move[block, table].reshape(1, -1), -1.0)]
                 rows(terms, lower=lies, upper=lies)
                 home = [move[block, :, moving.home], lifted[block, :, locations]]
@@ -133,8 +143,8 @@ class _Builder:
                 sources = [at, locations] if origin == at else [at]
                 falling.append(self.fall[block, sources])
                 rows([(falling[-1][None], 1.0), (self.topple[None, [at]], -1.0)], upper=0)
-            if self.options.max_topple is not None and falling:
-                cap = -float(self.options.max_topple)
+            if self.cap is not None and falling:
+                cap = -float(self.cap)
                 rows([(np.concatenate(falling)[None], 1.0), (self.topple[None, [at]], cap)], upper=0)
         for source in range(locations if places.lifted else 0):
             openly = []
@@ -168,7 +178,8 @@ class _Builder:
         decks, locations = places.decks, len(places.locations)
         if not decks:
             return
-        stood = np.array([-1.0 if places.carriers[deck.carrier].at == deck.station else 0.0 for deck in decks])
+        stood = np.zeros(len(decks))
+        stood[[number for number, _ in places.occupied()]] = -1.0
         rows([(self.carry.T, 1.0), (self.carry, -1.0), (self.stop[:, None], -1.0)], lower=stood, upper=stood)
         pairs = self.carry >= 0
         for block in range(len(self.moving.blocks)):
@@ -196,22 +207,20 @@ class _Builder:
         prices = np.concatenate([price for _, price in self.prices])
         self.milp.add_row(columns, prices, upper=self.below - 1)
         places, moving, rows = self.places, self.moving, self.milp.add_sums
-        locations = len(places.locations)
         open_ended = [self.move[:, :, moving.gone].ravel(), self.forgotten]
         if moving.anywhere:
             open_ended.append(self.move[:, :, moving.home].ravel())
-        group = -1.0 if self.options.max_topple is None else -float(max(1, places.lifted))
+        group = -1.0 if self.cap is None else -float(max(1, places.lifted))
         for at in range(places.toppled):
             waiting = [block for block, origin in enumerate(moving.origin) if origin == at]
             arriving = [block for block, target in enumerate(moving.target) if target == at]
             touching = [self.move[:, at].ravel(), self.move[:, :, at].ravel(), *open_ended]
             touching += [self.move[waiting, moving.start].ravel(), self.move[arriving, :, moving.home].ravel()]
             lifts = [self.lift[at].ravel(), self.lift[:, at].ravel()]
-            standing = len(self.instance.start[places.locations[at]])
-            first = min(1, standing) if self.options.max_topple is None else standing
+            standing = len(self.start[places.locations[at]])
+            first = min(1, standing) if self.cap is None else standing
             terms = [(self.topple[None, [at]], 1.0), *((part[None], -1.0) for part in touching)]
             rows([*terms, *((part[None], group) for part in lifts)], upper=first)
         if len(places.carriers) == 1:
-            inside = slice(locations, places.table)
-            touching = [self.move[:, :, inside].ravel(), self.move[:, inside].ravel(), *open_ended]
+            touching = [self.move[:, :, places.inside].ravel(), self.move[:, places.inside].ravel(), *open_ended]
             rows([(self.carry.reshape(1, -1), 1.0), *((part[None], -1.0) for part in touching)], upper=0)

@@ -1,1 +1,0 @@
-"""The layered model of the whole family: pick, place, topple, carry and lift, at the instance's own costs."""

@@ -1,0 +1,72 @@
+"""The search over horizons: first a short model, then one that holds every cheaper plan; what is too large is said."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from smash.planners.flow.search import FlowSearch, TooLarge, check_gadget_size
+from smash.planners.flow.warm import motion_of
+from smash.planners.protocol import Settings, SolveLog
+from smash.problem import Pick, Place, PlanOptions, StacksGoal, make_instance
+from smash.problem.problem import Problem
+from smash.problem.sets.generators import generate
+
+
+def turned(options=None):
+    goal = StacksGoal({"s": ("b", "a")})
+    instance = make_instance(
+        name="x", blocks="ab", stacks=["s"], buffers=["u", "v"], start={"s": ("a", "b")}, goal=goal
+    )
+    return Problem(instance, options or PlanOptions())
+
+
+def search(problem, **settings):
+    return FlowSearch(problem, Settings(**settings), SolveLog(problem), math.inf)
+
+
+@pytest.mark.parametrize(("topple", "cost"), [(True, 5), (False, 8)])
+def test_a_short_horizon_gives_the_plan_and_a_longer_one_the_proof(topple, cost):
+    found = search(turned(PlanOptions(topple)))
+    first = found.first_horizon()
+    found.run()
+    stages = found.log.details["stages"]
+    assert (found.log.cost, found.log.bound, found.log.bound_origin) == (cost, cost, "milp")
+    assert stages[0]["horizon"] == first < stages[-1]["horizon"]
+    assert stages[-1]["started_from_a_plan"] == topple  # without, the first horizon holds no plan
+    assert stages[-1]["horizon"] >= found.bound.steps(cost - 1)
+
+
+def test_a_given_horizon_is_the_only_one():
+    found = search(turned(), horizon=3)
+    found.run()
+    assert [stage["horizon"] for stage in found.log.details["stages"]] == [3]
+    assert found.log.cost is None
+    assert 4 <= found.log.bound <= 5
+
+
+def test_a_plan_that_is_there_fits_the_first_horizon():
+    problem = turned(PlanOptions(topple=False))
+    found = search(problem)
+    cold = found.first_horizon()
+    detour = (Pick("b", "s"), Place("b", "u"), Pick("b", "u"), Place("b", "v"), Pick("a", "s"), Place("a", "u"))
+    found.log.offer((*detour, Pick("b", "v"), Place("b", "s"), Pick("a", "u"), Place("a", "s")), "greedy")
+    assert found.log.cost == 10
+    assert found.first_horizon() >= max(cold, motion_of(problem, found.scope, found.log.best).steps)
+
+
+def test_a_gadget_or_a_model_that_is_too_large_is_refused():
+    wide = generate("multi", 400, buffers=2, seed=5)[0]
+    check_gadget_size(wide)
+    with pytest.raises(TooLarge, match="edges"):
+        check_gadget_size(wide, seconds=1.0)
+    found = search(turned())
+    with pytest.raises(TooLarge, match="arcs at horizon 100000"):
+        found.model(100_000)
+
+
+def test_without_time_it_says_before_which_horizon():
+    found = search(turned())
+    found.solving = replace(found.solving, until=-math.inf)
+    found.run()
+    assert "before the model of horizon" in found.log.details["stopped"]

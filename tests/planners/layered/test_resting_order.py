@@ -1,0 +1,35 @@
+"""The order of what rests on one another, which the relaxation alone leaves free."""
+
+import pytest
+
+from smash.planners.layered.network.moving import Moving
+from smash.planners.layered.network.relaxed import build_relaxed
+from smash.problem import PositionsGoal
+from tests.cheapest import cheapest_plan
+from tests.planners.layered.made import NO_TOPPLE, optimum, priced, problem
+
+ONE_PLACE = {"s": "abc"}, {"t": "acb"}
+"""b and c rest on u; b, which came later or lies below, must not leave it first."""
+
+
+@pytest.mark.parametrize(("ordered", "cost"), [(False, 20), (True, None)])
+def test_who_came_first_lies_below_and_leaves_last(ordered, cost):
+    made = priced(*ONE_PLACE, buffers="u", options=NO_TOPPLE)
+    built = build_relaxed(made, Moving.of(made), 5, ordered=ordered)
+    assert optimum(built) == cost
+
+
+def test_with_more_layers_there_is_a_plan_that_keeps_the_order():
+    made = problem({"s": "ab"}, {"s": "ba"}, "s", "u v", NO_TOPPLE)
+    assert optimum(build_relaxed(made, Moving.of(made), 4, ordered=True)) == 8
+
+
+def test_a_lift_keeps_the_order_of_a_pair():
+    made = problem({"s": "ab"}, {"t": "ba"}, options=NO_TOPPLE, capacities={"lift": 2})
+    assert (
+        optimum(build_relaxed(made, Moving.of(made), 2, ordered=True)) == cheapest_plan(made.instance, made.options)[0]
+    )
+    turned = problem({"s": "abcd"}, {"t": "dcba"}, buffers="u", options=NO_TOPPLE, capacities={"lift": 3})
+    assert optimum(build_relaxed(turned, Moving.of(turned), 3, ordered=True)) is None
+    same = problem({"s": "ab"}, PositionsGoal({"a": ("t", 1), "b": ("t", 2)}), capacities={"lift": 2})
+    assert optimum(build_relaxed(same, Moving.of(same), 1, ordered=True)) == 1
