@@ -8,11 +8,11 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 from functools import cache
-from importlib.metadata import entry_points
 from typing import Any
 
 import pandas as pd
 
+from smash.problem.entry_points import entry_points_of
 from smash.records.runs import RunRecord
 
 GROUP = "smash.metrics"
@@ -27,7 +27,7 @@ none; its docstring says what it is."""
 def metrics() -> dict[str, Metric]:
     """Return the registered metrics by name; one that cannot be loaded is named on stderr and left out."""
     found: dict[str, Metric] = {}
-    for entry in sorted(entry_points(group=GROUP), key=lambda entry: entry.name):
+    for entry in sorted(entry_points_of(GROUP), key=lambda entry: entry.name):
         try:
             found[entry.name] = entry.load()
         except Exception as error:

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from importlib.metadata import entry_points
 
+from smash.problem.entry_points import entry_points_of
 from smash.problem.errors import SmashError, Unsupported
 from smash.problem.model import Instance, PlanOptions
 from smash.problem.problem import Problem
@@ -93,7 +93,7 @@ COMPOSED = "chain"
 
 def encoding_names() -> list[str]:
     """Return how topples can be told: the ways of this package, then those that others registered."""
-    return [*TOPPLE_ENCODINGS, *sorted(set(entry_points(group=GROUP).names) - set(TOPPLE_ENCODINGS))]
+    return [*TOPPLE_ENCODINGS, *sorted(set(entry_points_of(GROUP).names) - set(TOPPLE_ENCODINGS))]
 
 
 def get_encoding(name: str) -> Encoding:
@@ -105,7 +105,7 @@ def get_encoding(name: str) -> Encoding:
     """
     if name in TOPPLE_ENCODINGS:
         return ENCODINGS[name]
-    entries = entry_points(group=GROUP, name=name)
+    entries = entry_points_of(GROUP).select(name=name)
     if not entries:
         raise UnknownEncoding(name, encoding_names())
     try:

@@ -7,12 +7,13 @@ import platform
 import subprocess
 import sys
 from functools import cache
-from importlib.metadata import PackageNotFoundError, entry_points, version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from smash_baselines.encodings import GROUP as ENCODINGS
 
 from smash.planners.registry import GROUP
+from smash.problem.entry_points import entry_points_of
 from smash.records.record import Commit, Machine
 
 PACKAGES = (
@@ -45,7 +46,7 @@ def versions(planner: str) -> dict[str, str]:
             continue
     plain, _, encoding = planner.partition(":")
     for group, name in ((GROUP, planner), (GROUP, plain), (ENCODINGS, encoding)):
-        for entry in entry_points(group=group, name=name):
+        for entry in entry_points_of(group).select(name=name):
             if entry.dist is not None:
                 found[entry.dist.name] = entry.dist.version
     return found

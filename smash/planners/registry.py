@@ -6,9 +6,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import EntryPoint
 
 from smash.planners.protocol import Planner, Settings, why_unsupported
+from smash.problem.entry_points import entry_points_of
 from smash.problem.errors import SmashError, Unsupported
 from smash.problem.extras import missing_extra
 from smash.problem.problem import Problem
@@ -93,4 +94,4 @@ def why_unknown(name: str) -> str | None:
 
 
 def _registered() -> dict[str, EntryPoint]:
-    return {entry.name: entry for entry in entry_points(group=GROUP)}
+    return {entry.name: entry for entry in entry_points_of(GROUP)}

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
-from importlib.metadata import entry_points
 from typing import Any
+
+from smash.problem.entry_points import entry_points_of
 
 
 def added(group: str, kind: type) -> Iterator[Any]:
@@ -22,7 +23,7 @@ def added_classes(group: str, kind: type) -> Iterator[Any]:
 
 
 def _faultless(group: str, kind: type, take: Callable[[Any], Any]) -> Iterator[Any]:
-    for entry in entry_points(group=group):
+    for entry in entry_points_of(group):
         try:
             thing = take(entry.load())
             _require(thing, kind)
