@@ -25,7 +25,7 @@ from functools import cached_property
 from smash.gadget import EdgeKind, Gadget, NodeKind, gadget_of
 from smash.gadget.motion import settled
 from smash.gadget.parts.registry import parts_of
-from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal, State
+from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal, State, no_goal
 from smash.problem.problem import Problem
 
 
@@ -166,8 +166,8 @@ def goal_positions(instance: Instance) -> dict[str, tuple[str, int]]:
             return dict(positions)
         case OnGoal():
             return {}
-        case goal:
-            raise TypeError(f"{goal!r} is no goal")
+        case _:
+            no_goal(instance.goal)
 
 
 def correct_blocks(instance: Instance) -> frozenset[str]:
