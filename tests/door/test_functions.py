@@ -216,6 +216,10 @@ def without(packages, program, *arguments):
 
 
 PLANNED = "import smash; i = smash.make_instance({'s1': ['a']}, {'s2': ['a']}); p = smash.plan(i); smash.check(i, p)\n"
+BULLET = ": pip install 'smash-testbed[execution]'"
+if sys.version_info >= (3, 12):
+    BULLET = f", which has no wheels for Python 3.{sys.version_info.minor}: use Python 3.11"
+"""What is said of PyBullet where it is wanted."""
 COMMAND = "from smash.cli import main\nmain()\n"
 
 
@@ -224,7 +228,7 @@ COMMAND = "from smash.cli import main\nmain()\n"
     [
         ("smash.draw(i, p)", "draw needs matplotlib: pip install 'smash-testbed[analysis]'"),
         ("smash.compare([i], ['smash'])", "compare needs pandas: pip install 'smash-testbed[analysis]'"),
-        ("smash.execute(i, p)", "execute needs pybullet: pip install 'smash-testbed[execution]'"),
+        ("smash.execute(i, p)", f"execute needs pybullet{BULLET}"),
     ],
 )
 def test_without_an_extra_one_line_says_how_to_get_it(call, words):
@@ -253,7 +257,8 @@ def test_a_command_without_its_extra_is_one_line_and_exit_code_6(arguments, extr
     ended = without(EXTRAS[extra], COMMAND, *arguments)
     assert ended.returncode == 6, ended.stderr
     assert ended.stderr.count("\n") == 1
-    assert ended.stderr.endswith(f": pip install 'smash-testbed[{extra}]'\n")
+    line = BULLET if "pybullet" in ended.stderr else f": pip install 'smash-testbed[{extra}]'"
+    assert ended.stderr.endswith(f"{line}\n")
 
 
 def test_an_engine_of_an_extra_that_is_not_there_says_how_to_get_it(monkeypatch):
