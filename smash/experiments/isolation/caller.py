@@ -1,8 +1,7 @@
 """One planner call in processes of its own, with limits, seen from the caller's side.
 
-The caller may have threads (a local pool, a Dask worker): it starts a fresh interpreter, never forks. What
-the run says arrives line by line, so that a run that is stopped keeps what it had found. Every plan is judged by
-the law here, whatever planner made it.
+What the run says arrives line by line, so that a run that is stopped keeps what it had found. Every plan is judged
+by the law here, whatever planner made it.
 """
 
 from __future__ import annotations
@@ -10,16 +9,13 @@ from __future__ import annotations
 import json
 import os
 import selectors
-import subprocess
-import sys
-import uuid
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
 from threading import Event
 from time import monotonic
 from typing import Any
 
 from smash.experiments.isolation.job import STARTUP_LIMIT, Job, Report, grace
+from smash.experiments.isolation.starting import Guardian, guardian_of
 from smash.planners.protocol import OnIncumbent
 from smash.problem.errors import SmashError
 from smash.problem.files.plans import action_from_list
@@ -28,8 +24,6 @@ from smash.problem.plan import Incumbent, Plan, Status
 from smash.problem.rules import Verdict
 from smash.records.outcomes import OutcomeName
 
-MARK = "SMASH_RUN"
-"""Environment variable that every process of a run inherits, with a value of the run's own."""
 _PATIENCE = 20.0
 """Seconds beyond all limits after which a guardian that says nothing is given up."""
 
@@ -43,49 +37,14 @@ def run_isolated(job: Job, on_incumbent: OnIncumbent | None = None, stop: Event 
         stop: set from outside, it ends the run, whose outcome is then `interrupted`.
     """
     heard = _Heard(job, on_incumbent)
-    with _guardian(job) as guardian:
+    with guardian_of(job) as guardian:
         for line in _lines(guardian, job, stop):
             heard.take(json.loads(line))
     return heard.report(interrupted=stop is not None and stop.is_set())
 
 
-@contextmanager
-def _guardian(job: Job) -> Iterator[subprocess.Popen[bytes]]:
-    mark = uuid.uuid4().hex
-    here = "import sys; sys.path[:] = {!r}; from smash.experiments.isolation.guardian import main; main()"
-    guardian = subprocess.Popen(
-        [sys.executable, "-P", "-c", here.format([os.path.abspath(entry) for entry in sys.path])],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        env={**os.environ, MARK: mark},
-        start_new_session=True,
-    )
-    assert guardian.stdin is not None
-    try:
-        with suppress(BrokenPipeError):
-            guardian.stdin.write(json.dumps(job.document()).encode() + b"\n")
-            guardian.stdin.flush()
-        yield guardian
-    finally:
-        with suppress(BrokenPipeError):
-            guardian.stdin.close()
-        try:
-            clean = guardian.wait(timeout=10) == 0
-        except subprocess.TimeoutExpired:
-            guardian.kill()
-            guardian.wait()
-            clean = False
-        if guardian.stdout is not None:
-            guardian.stdout.close()
-        if not clean:
-            _end_marked(mark)
-
-
-def _lines(guardian: subprocess.Popen[bytes], job: Job, stop: Event | None) -> Iterator[bytes]:
+def _lines(guardian: Guardian, job: Job, stop: Event | None) -> Iterator[bytes]:
     """Yield what the guardian says until it ends; where `stop` is set, close its input and hear it out."""
-    assert guardian.stdin is not None
-    assert guardian.stdout is not None
     last = monotonic() + STARTUP_LIMIT + job.budget + grace(job.budget) + _PATIENCE
     unread = b""
     with selectors.DefaultSelector() as selector:
@@ -101,16 +60,6 @@ def _lines(guardian: subprocess.Popen[bytes], job: Job, stop: Event | None) -> I
                 return
             *lines, unread = (unread + chunk).split(b"\n")
             yield from lines
-
-
-def _end_marked(mark: str) -> None:
-    """End what a killed guardian has left behind, found by the mark in its environment."""
-    import psutil
-
-    for process in psutil.process_iter():
-        with suppress(psutil.Error, OSError):
-            if process.environ().get(MARK) == mark:
-                process.kill()
 
 
 class _Heard:

@@ -22,7 +22,7 @@ from types import FrameType
 from typing import TYPE_CHECKING, Any, BinaryIO, NoReturn
 
 from smash.experiments.isolation.job import STARTUP_LIMIT, Job, grace
-from smash.experiments.isolation.lifetime import end_with_parent, prctl
+from smash.experiments.isolation.lifetime import adopt_orphans, end_with_parent
 from smash.experiments.isolation.solving import solve
 
 if TYPE_CHECKING:
@@ -31,16 +31,22 @@ if TYPE_CHECKING:
 SAMPLING = 0.1
 """Seconds between two looks at the tree's memory."""
 SAID_LINES = 20
-
-_PR_SET_CHILD_SUBREAPER = 36
+MARK = "SMASH_RUN"
+"""Environment variable that every process of a run inherits, with a value of the run's own."""
 
 
 def main() -> None:
-    """Read one job (a JSON line) from standard input, run it, and write what happens to standard output."""
+    """Read one job (a JSON line) from standard input, and guard it."""
     signal.signal(signal.SIGTERM, _leave)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    job = Job.from_document(json.loads(sys.stdin.buffer.readline()))
-    prctl(_PR_SET_CHILD_SUBREAPER, 1)
+    guard(Job.from_document(json.loads(sys.stdin.buffer.readline())))
+
+
+def guard(job: Job) -> None:
+    """Run a job, write what happens to standard output, and end it where standard input closes."""
+    signal.signal(signal.SIGTERM, _leave)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    adopt_orphans(True)
     with tempfile.TemporaryDirectory(prefix="smash-run-", ignore_cleanup_errors=True) as scratch:
         os.environ["TMPDIR"] = scratch
         tempfile.tempdir = None
