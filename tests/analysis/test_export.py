@@ -109,4 +109,4 @@ def test_no_records_and_missing_packages_are_one_line(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     ended = CliRunner().invoke(smash, ["records", "export", str(tmp_path), "--out", str(tmp_path / "out")])
     assert isinstance(ended.exception, Unsupported)
-    assert "pip install 'smash-testbed[analysis]'" in str(ended.exception)
+    assert "pip install 'smash-testbed[parquet]'" in str(ended.exception)

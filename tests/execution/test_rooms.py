@@ -7,7 +7,15 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-FLOORS = ("problem", "motion", "execution.scene", "execution.actions", "execution.physics", "execution.layout")
+FLOORS = (
+    "problem",
+    "records",
+    "motion",
+    "execution.scene",
+    "execution.actions",
+    "execution.physics",
+    "execution.layout",
+)
 FLOORS += ("execution", "execution.trials", "execution.viewing")
 
 
