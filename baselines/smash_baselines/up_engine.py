@@ -24,7 +24,7 @@ from unified_planning.engines.results import (
 )
 from unified_planning.model import AbstractProblem, Problem, ProblemKind
 
-from smash.planners.protocol import OnIncumbent, Settings, ask, why_unsupported
+from smash.planners.protocol import OnIncumbent, Settings, ask, why_refused
 from smash.planners.registry import DEFAULT, get_planner
 from smash.problem.errors import MalformedFile, SmashError, Unsupported
 from smash.problem.model import Action
@@ -145,7 +145,7 @@ class SmashEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin):  # type: ig
         report: OnIncumbent = lambda _seconds, _cost, actions: heard.put(tuple(actions))  # noqa: E731
         try:
             planner = get_planner(self._planner)
-            reason = why_unsupported(planner, asked, settings)
+            reason = why_refused(planner, asked, settings)
             if reason:
                 raise Unsupported(reason)
             heard.put(ask(planner, asked, settings, budget, report, name=self._planner))

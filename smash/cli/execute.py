@@ -9,7 +9,7 @@ import click
 from smash.cli import fail
 from smash.cli.choices import SECONDS
 from smash.cli.signals import ended_by_signals
-from smash.experiments.executing import REPLAN_BUDGET, executor_of
+from smash.experiments.episodes.executors import REPLAN_BUDGET, executor_of
 from smash.problem.extras import EXECUTION, require
 from smash.problem.files.documents import require_writable, write_text
 from smash.problem.files.instances import read_instance

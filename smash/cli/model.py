@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from smash.cli.choices import without_option
-from smash.planners.protocol import SolveOptions, plan_options, settings_of, why_unsupported
+from smash.planners.protocol import SolveOptions, plan_options, settings_of, why_refused
 from smash.planners.registry import get_planner
 from smash.problem.errors import Unsupported
 from smash.problem.files.instances import read_instance
@@ -46,7 +46,7 @@ def command(
         raise Unsupported(f"planner {planner!r} has no model to write; smash-flow and smash-layered have")
     problem = read_instance(instance)
     options = SolveOptions(not no_topple, max_topple, warm_start, horizon, without=without)
-    reason = why_unsupported(chosen, Problem(problem, plan_options(options)), settings_of(options))
+    reason = why_refused(chosen, Problem(problem, plan_options(options)), settings_of(options))
     if reason:
         raise Unsupported(f"planner {planner!r}: unsupported: {reason}")
     model = build(problem, options)

@@ -91,7 +91,7 @@ def command(
         raise click.BadParameter("nan is no number of seconds", param_hint="--budget")
     require_writable(out)
     with stopped_by_signals() as stop, _progress(planner) as tell:
-        report = run_isolated(job, tell, stop)
+        report = run_isolated(job, tell, stop, for_this=True)
     _write(report, out)
     _end(report, instance, planner, budget)
 

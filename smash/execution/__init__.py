@@ -9,7 +9,7 @@ The rooms; each imports those before it in this list, none those after it:
   of `kind` topple, carry and lift, with the list of them in `registry`.
 - `physics`: the simulated world of one episode. `layout`: scenes judged and drawn.
 - here: `readback` (the law's state from settled poses), `grounding` (what is planned when), `performing` and
-  `recovery` (one action, and what is done where it fails), `executor` (an episode), `episode` (its record), `policy`
+  `recovery` (one action, and what is done where it fails), `executor` (an episode), `policy`
   (what is done about failures), `errors` (their names).
 - `trials` (measurements), `viewing` (replays, films, trajectories).
 

@@ -3,23 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from smash.problem.errors import RefusedPlan, SmashError
+from smash.experiments.episodes.executors import executor_of
+from smash.problem.errors import SmashError
 from smash.problem.extras import EXECUTION, require
 from smash.problem.files.given import GivenInstance, GivenPlan, given_instance, given_plan
-from smash.problem.model import Instance
-from smash.problem.plan import Plan, check_plan
 
 if TYPE_CHECKING:
-    from smash.execution.executor import Executor
-    from smash.execution.physics.world import Frame
     from smash.execution.scene.tabletop import Tabletop
-    from smash.records.episodes import Episode, Performed
-
-REPLAN_BUDGET = 10.0
-"""Wall time of each replanning, where none is given [s]."""
+    from smash.records.episodes import Episode
 
 
 def execute(
@@ -63,58 +56,3 @@ def execute(
         raise SmashError(f"seed: {seed} is not allowed; 0 to {2**31 - 1}")
     problem = given_instance(instance)
     return executor_of(problem, given_plan(plan, problem), seed=seed, replan=replan, scene=scene).run()
-
-
-def executor_of(
-    instance: Instance,
-    plan: Plan,
-    *,
-    seed: int = 0,
-    replan: bool = True,
-    scene: str | os.PathLike[str] | Tabletop | None = None,
-    replanner: str | None = None,
-    budget: float = REPLAN_BUDGET,
-    gui: bool = False,
-    on_frame: Frame | None = None,
-    on_step: Callable[[Performed], Any] | None = None,
-) -> Executor:
-    """Return an executor of a legal plan, to be run once.
-
-    Args:
-        instance: the problem.
-        plan: a plan for it.
-        seed: of the blocks' start poses, and for planners that draw.
-        replan: whether to plan anew where an action cannot be done.
-        scene: the path of a scene file, or a scene (None: the built-in one).
-        replanner: planner to replan with (None: the plan's own); `greedy` where nobody is called so.
-        budget: wall time of each replanning [s].
-        gui: show PyBullet's window.
-        on_frame: called with the world 25 times a simulated second.
-        on_step: called with each action before it is carried out.
-
-    Raises:
-        RefusedPlan: where the law refuses the plan.
-        SmashError: where the scene is malformed, or has no place for the instance.
-    """
-    verdict = check_plan(instance, plan)
-    if not verdict.accepted:
-        raise RefusedPlan(f"the plan for {instance.name!r}: {verdict}")
-    from smash.execution.executor import Executor
-    from smash.execution.policy import OPEN
-    from smash.execution.scene.scene_file import default_scene, read_scene
-    from smash.execution.scene.tabletop import Tabletop
-    from smash.experiments.episodes.replanning import replanner as replanner_by
-
-    if not isinstance(scene, Tabletop):
-        scene = default_scene() if scene is None else read_scene(scene)
-    return Executor(
-        instance,
-        plan,
-        scene,
-        seed=seed,
-        policy=None if replan else OPEN,
-        replanner=replanner_by(replanner or plan.planner, budget, seed) if replan else None,
-        gui=gui,
-        on_frame=on_frame,
-        on_step=on_step,
-    )

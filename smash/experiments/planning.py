@@ -87,12 +87,12 @@ def failure(report: Report, planner: str, where: str = "") -> SmashError | None:
 
 
 def _check(budget: float, max_topple: int | None, seed: int) -> None:
-    if not 0 < budget <= LONGEST:
-        raise SmashError(f"budget: {budget} is not allowed; seconds above 0")
-    if max_topple is not None and max_topple < 1:
-        raise SmashError(f"max_topple: {max_topple} is not allowed; None, or 1 and more")
-    if seed < 0:
-        raise SmashError(f"seed: {seed} is not allowed; 0 and more")
+    if not isinstance(budget, int | float) or not 0 < budget <= LONGEST:
+        raise SmashError(f"budget: {budget!r} is not allowed; seconds above 0")
+    if max_topple is not None and (not isinstance(max_topple, int) or max_topple < 1):
+        raise SmashError(f"max_topple: {max_topple!r} is not allowed; None, or 1 and more")
+    if not isinstance(seed, int) or seed < 0:
+        raise SmashError(f"seed: {seed!r} is not allowed; 0 and more")
 
 
 def _planned_here(job: Job) -> Plan:

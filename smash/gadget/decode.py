@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from smash.gadget.motion import PebbleMotion
-from smash.problem.model import TABLE, Action, Instance, Pick, Place, PlanOptions, State
+from smash.problem.model import TABLE, Action, Pick, Place, State
 from smash.problem.rules import Law
 
 
-def decode(motion: PebbleMotion, instance: Instance, options: PlanOptions | None = None) -> tuple[Action, ...]:
-    """Return the actions of a motion that starts in the start state of `instance`.
+def decode(motion: PebbleMotion, law: Law) -> tuple[Action, ...]:
+    """Return the actions of a motion that starts in the start state of the law's instance.
 
     Moves of one step touch different locations and carriers (`motion_fault` says so), hence any order of them is
     legal; an activation comes first, then transfers in the order of the pebbles.
@@ -16,8 +16,7 @@ def decode(motion: PebbleMotion, instance: Instance, options: PlanOptions | None
     Raises:
         IllegalAction: where the motion breaks the rules so that the law refuses an action.
     """
-    law = Law(instance, options)
-    state = State.start_of(instance)
+    state = State.start_of(law.instance)
     actions: list[Action] = []
     for step in range(motion.steps):
         for action in step_actions(motion, step, state):

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib.metadata import EntryPoint
 
-from smash.planners.protocol import Planner, Settings, why_unsupported
+from smash.planners.protocol import Planner, Settings, why_refused
 from smash.problem.entry_points import entry_points_of
 from smash.problem.errors import SmashError, Unsupported
 from smash.problem.extras import missing_extra
@@ -73,7 +73,7 @@ def make_ready(planner: Planner, name: str, problem: Problem, settings: Settings
     Raises:
         Unsupported: where it does not take the problem.
     """
-    reason = why_unsupported(planner, problem, settings)
+    reason = why_refused(planner, problem, settings)
     if reason:
         raise Unsupported(f"planner {name!r}: unsupported: {reason}")
     prepare = getattr(planner, "prepare", None)

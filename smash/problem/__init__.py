@@ -1,4 +1,9 @@
-"""The law and its files: instances, states, actions, goals, the checker, generators, blocks-world import."""
+"""The law and its files: instances, states, actions, goals, the checker, generators, blocks-world import.
+
+Modules by the names that they had in 0.1 (`smash.problem.topple`, …) are found in `former/`, one line each.
+"""
+
+import os
 
 from smash.problem.actions.carry import Carry
 from smash.problem.actions.lift import Lift
@@ -31,6 +36,8 @@ from smash.problem.model import (
 )
 from smash.problem.plan import Incumbent, Plan, check_plan
 from smash.problem.rules import Law, Verdict
+
+__path__.append(os.path.join(os.path.dirname(__file__), "former"))
 
 __all__ = [
     "TABLE",

@@ -33,6 +33,10 @@ class Problem:
     instance: Instance
     options: PlanOptions = field(default_factory=PlanOptions)
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a copy is made of: what follows is worked out anew where it is needed."""
+        return {"instance": self.instance, "options": self.options}
+
     @cached_property
     def law(self) -> Law:
         """The law of this instance under these options."""

@@ -14,7 +14,7 @@ from smash_baselines.steps import actions_of, steps_of
 from smash_baselines.task import compile_instance
 
 from smash.cli.export_pddl import command
-from smash.planners.protocol import Settings, SolveOptions, plan_options, why_unsupported
+from smash.planners.protocol import Settings, SolveOptions, plan_options, why_refused
 from smash.problem import (
     TABLE,
     Carrier,
@@ -161,11 +161,11 @@ def test_engines_leave_what_the_goal_does_not_name_on_the_table_and_exports_do_n
 
 
 def test_planners_say_what_they_take():
-    assert why_unsupported(FdLama(), Problem(scoop(), PlanOptions()), Settings()) is None
-    assert "chain" in why_unsupported(FdLamaConditional(), Problem(scoop(), PlanOptions()), Settings())
-    assert why_unsupported(FdOpt().with_encoding("chain"), Problem(scoop(), PlanOptions()), Settings()) is None
-    assert "carry" in why_unsupported(Aries(), Problem(scoop(), PlanOptions()), Settings())
-    assert "costs are in ms" in why_unsupported(
+    assert why_refused(FdLama(), Problem(scoop(), PlanOptions()), Settings()) is None
+    assert "chain" in why_refused(FdLamaConditional(), Problem(scoop(), PlanOptions()), Settings())
+    assert why_refused(FdOpt().with_encoding("chain"), Problem(scoop(), PlanOptions()), Settings()) is None
+    assert "carry" in why_refused(Aries(), Problem(scoop(), PlanOptions()), Settings())
+    assert "costs are in ms" in why_refused(
         Aries(), Problem(scoop(capacities={}), PlanOptions(without=("carry",))), Settings()
     )
     assert {part.kind for part in PARTS} >= {"topple", "carry", "lift"}
@@ -173,7 +173,7 @@ def test_planners_say_what_they_take():
 
 def assert_proven(planner, instance, options, budget=60.0):
     solve_options = SolveOptions(options.topple, options.max_topple, without=options.without)
-    assert why_unsupported(planner, Problem(instance, plan_options(solve_options)), Settings()) is None
+    assert why_refused(planner, Problem(instance, plan_options(solve_options)), Settings()) is None
     try:
         best = cheapest_plan(instance, options, 30_000)
     except MemoryError:

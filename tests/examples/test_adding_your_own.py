@@ -181,7 +181,7 @@ instance = read_instance("far.json")
 plan = read_plan("plan.json")
 motion = encode(instance, plan.actions)
 assert motion_fault(motion) is None, motion_fault(motion)
-again = decode(motion, instance)
+again = decode(motion, Law(instance))
 assert Law(instance).check(again).accepted
 print(motion.cost, Law(instance).check(again).cost)
 """

@@ -40,7 +40,7 @@ def test_every_legal_plan_is_a_motion_of_the_same_cost_that_decodes_to_the_same_
     assert motion.cost == len(actions) - 2 * put_backs(actions)
     assert motion.layers[0] == settled(motion.gadget, instance.blocks, State.start_of(instance))
     assert motion.layers[-1] == settled(motion.gadget, instance.blocks, state)
-    decoded = decode(motion, instance)
+    decoded = decode(motion, Law(instance))
     assert len(decoded) == motion.cost
     assert final_state(instance, decoded).key() == state.key()
 
@@ -58,7 +58,7 @@ def test_plans_of_the_whole_family_are_motions_of_the_same_cost(walk):
     assert motion_fault(motion) is None
     assert motion.cost == Law(instance).price(actions) - price_of_put_backs(instance, actions)
     assert motion.layers[-1] == settled(motion.gadget, instance.blocks, state)
-    decoded = decode(motion, instance)
+    decoded = decode(motion, Law(instance))
     assert Law(instance).price(decoded) == motion.cost
     after = final_state(instance, decoded)
     assert after.key() == state.key()
@@ -69,7 +69,7 @@ def test_plans_of_the_whole_family_are_motions_of_the_same_cost(walk):
 def test_every_motion_that_obeys_the_rules_is_a_legal_plan_of_its_cost(instance, options, seed):
     """Random walks of the pebbles, step by step: those that break no rule decode to a plan of the motion's cost."""
     motion = random_motion(Random(seed), instance, gadget_of(instance, options))
-    decoded = decode(motion, instance, options)
+    decoded = decode(motion, Law(instance, options))
     assert Law(instance, options).price(decoded) == motion.cost
 
 
@@ -109,7 +109,7 @@ def test_a_capped_plan_fits_the_capped_gadget(walk):
     options = PlanOptions(True, 2)
     motion = encode(instance, actions, gadget_of(instance, options))
     assert motion_fault(motion) is None
-    assert len(decode(motion, instance, options)) == motion.cost
+    assert len(decode(motion, Law(instance, options))) == motion.cost
 
 
 @pytest.fixture
@@ -124,7 +124,7 @@ def tower():
 def test_a_topple_is_one_activation_for_all_its_blocks(tower):
     motion = encode(tower, [Topple("s1", 2)])
     assert motion.cost == 1
-    assert decode(motion, tower) == (Topple("s1", 2),)
+    assert decode(motion, Law(tower)) == (Topple("s1", 2),)
 
 
 def test_moves_of_different_locations_share_a_step():

@@ -7,7 +7,7 @@ from smash.planners.astar import AStarPlanner
 from smash.planners.greedy import GreedyPlanner
 from smash.planners.portfolio import SmashPlanner
 from smash.planners.precedence.planner import PrecedencePlanner
-from smash.planners.protocol import Settings, SolveOptions, why_unsupported
+from smash.planners.protocol import Settings, SolveOptions, why_refused
 from smash.problem import Costs, Law, PlanOptions, State
 from smash.problem.problem import Problem
 from smash.problem.views.distances import Estimate
@@ -58,7 +58,7 @@ def test_greedy_plans_are_legal_and_cost_what_they_say(instance, options):
 
 def test_a_planner_that_counts_actions_of_three_kinds_says_so():
     def why(instance, options):
-        return why_unsupported(PrecedencePlanner(), Problem(instance, options), Settings())
+        return why_refused(PrecedencePlanner(), Problem(instance, options), Settings())
 
     left_out = PlanOptions(without=("carry", "lift"))
     assert "does not plan with carry" in why(scoop(), PlanOptions())

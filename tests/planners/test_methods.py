@@ -1,5 +1,7 @@
 """The protocol of planners: the methods table and its loop, the log, and planners from outside."""
 
+import copy
+import pickle
 import textwrap
 from pathlib import Path
 
@@ -7,6 +9,7 @@ import pytest
 
 from smash.planners.portfolio import SmashPlanner
 from smash.planners.protocol import (
+    BasePlanner,
     IncumbentLog,
     Method,
     MethodPlanner,
@@ -23,7 +26,7 @@ from smash.planners.protocol import (
     walk,
 )
 from smash.planners.registry import get_planner, planner_names
-from smash.problem import Costs, PlanOptions, StacksGoal, make_instance, read_instance
+from smash.problem import Costs, Pick, Place, PlanOptions, StacksGoal, Topple, make_instance, read_instance
 from smash.problem.problem import Problem
 
 LATER = float("inf")
@@ -148,8 +151,15 @@ OUTSIDER = """
 from smash.planners.demands import demands_of
 from smash.planners.indexed import Indexed
 from smash.planners.protocol import BasePlanner, IncumbentLog, OnIncumbent, PlanResult, SolveOptions
+from smash.planners.gentle import gentle_topples
+from smash.planners.protocol import why_unsupported
+from smash.planners.registry import get_planner
 from smash.planners.targets import target_piles
 from smash.problem import Instance, Law, State
+from smash.problem.family import is_plain, kinds_of
+from smash.problem.instance_file import make_instance, read_instance
+from smash.problem.suites import with_buffers
+from smash.problem.topple import Topple
 from smash.problem.model import Action
 
 class Outsider(BasePlanner):
@@ -162,6 +172,8 @@ class Outsider(BasePlanner):
         if impossible is not None:
             return impossible
         assert demands_of(instance).placed and target_piles(Indexed.of(instance))
+        assert is_plain(instance, options) and gentle_topples(instance, ()) == ()
+        assert why_unsupported(get_planner("greedy"), instance, options) is None
         law, queue, seen = Law(instance, options), [(State.start_of(instance), ())], set()
         for state, actions in queue:
             if law.goal_shortfall(state) is None:
@@ -195,6 +207,8 @@ def test_every_planner_that_is_registered_can_be_loaded_or_says_what_it_lacks():
 
 def test_the_log_of_outsiders_answers_with_a_plan_result():
     log = IncumbentLog(swap(), PlanOptions(topple=False))
+    first, second = log.result(details={"a": 1}), log.result(infeasible=True, details={"b": 2})
+    assert (first.details, second.details) == ({"a": 1}, {"b": 2})
     assert log.result().status == "unknown"
     assert not log.offer((), "nothing")
     assert "goal not reached" in log.refusals[0]
@@ -212,3 +226,21 @@ def test_costs_of_a_plan_are_those_of_the_law():
     )
     plan = ask(get_planner("smash"), Problem(instance), Settings(), 2, name="smash")
     assert (plan.status, plan.cost, len(plan.actions)) == ("optimal", 6, 2)
+
+
+def test_a_copy_of_a_problem_judges_as_the_problem_does():
+    problem = Problem(swap())
+    plan = [Topple("s1", 1), Pick("b", "table"), Place("b", "s1"), Pick("a", "table"), Place("a", "s1")]
+    assert problem.law.check(plan).accepted
+    for copied in (copy.deepcopy(problem), pickle.loads(pickle.dumps(problem))):
+        assert copied == problem
+        assert copied.law.check(plan).accepted
+        assert copied.numbered.blocks == 2
+
+
+def test_a_list_of_actions_from_outside_becomes_a_plan_like_any_other():
+    class Lists(BasePlanner):
+        def solve(self, instance, options, budget, on_incumbent=None):
+            return PlanResult("feasible", [Topple("s1", 1)])
+
+    assert ask(Lists(), Problem(swap()), Settings(), 1).actions == (Topple("s1", 1),)

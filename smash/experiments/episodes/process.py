@@ -7,13 +7,9 @@ import os
 import sys
 from pathlib import Path
 
-from smash.execution.executor import Executor
-from smash.execution.policy import OPEN
-from smash.execution.scene.scene_file import default_scene, read_scene
 from smash.execution.viewing.capture import Capture
+from smash.experiments.episodes.executors import executor_of
 from smash.experiments.episodes.question import EpisodeRun
-from smash.experiments.episodes.replanning import replanner
-from smash.experiments.episodes.series import REPLAN_BUDGET
 from smash.experiments.isolation.lifetime import end_with_parent
 from smash.problem.files.instances import instance_from_document
 from smash.records.episodes import Episode, episode_text
@@ -23,17 +19,13 @@ from smash.records.record import decoded
 def carry_out(run: EpisodeRun) -> Episode:
     """Carry out the plan of a sweep's record."""
     instance = instance_from_document(run.record.instance_document)
-    plan = run.record.plan
-    scene = default_scene() if run.scene is None else read_scene(run.scene)
-    seed, is_open = run.seed, run.policy == "open"
     capture = Capture(replay=None if run.replay is None else Path(run.replay))
-    executor = Executor(
+    executor = executor_of(
         instance,
-        plan,
-        scene,
-        seed=seed,
-        policy=OPEN if is_open else None,
-        replanner=None if is_open else replanner(plan.planner, REPLAN_BUDGET, seed),
+        run.record.plan,
+        seed=run.seed,
+        replan=run.policy != "open",
+        scene=run.scene,
         on_frame=capture.frame,
     )
     episode = executor.run()

@@ -31,8 +31,6 @@ from smash.records.writing import Writer
 REPLAYS = "replays"
 POLICIES = ("replan", "open")
 """`replan`: the executor repairs, retries and replans; `open`: the paper's open pipeline."""
-REPLAN_BUDGET = 10.0
-"""Seconds of each replanning."""
 
 
 def told_apart(scene: str | os.PathLike[str]) -> str:

@@ -28,16 +28,20 @@ _PATIENCE = 20.0
 """Seconds beyond all limits after which a guardian that says nothing is given up."""
 
 
-def run_isolated(job: Job, on_incumbent: OnIncumbent | None = None, stop: Event | None = None) -> Report:
+def run_isolated(
+    job: Job, on_incumbent: OnIncumbent | None = None, stop: Event | None = None, *, for_this: bool = False
+) -> Report:
     """Run one job to its end and report; when this returns or raises, all of its processes are gone.
 
     Args:
         job: what to run, and its limits.
         on_incumbent: called with every better legal plan as it arrives.
         stop: set from outside, it ends the run, whose outcome is then `interrupted`.
+        for_this: whether this process is there for this run alone, as that of `smash plan` is: with one thread it
+            may then be forked, which saves loading everything again.
     """
     heard = _Heard(job, on_incumbent)
-    with guardian_of(job) as guardian:
+    with guardian_of(job, may_fork=for_this) as guardian:
         for line in _lines(guardian, job, stop):
             heard.take(json.loads(line))
     return heard.report(interrupted=stop is not None and stop.is_set())

@@ -1,13 +1,15 @@
-"""How a guardian is started: forked by a caller that has one thread, else in a fresh interpreter.
+"""How a guardian is started: in a fresh interpreter, or forked where the caller is there for this run alone.
 
-Forking copies the one thread that forks and whatever locks the others hold, so only a process without others may do it.
-It halves what a small plan costs at the command line: what is loaded here need not be loaded again.
+Forking copies the one thread that forks and whatever locks others hold, and the memory of the caller counts as the
+run's; so only a process of one thread that has loaded nothing but this package, and has started nothing else, does it.
+It spares a small plan at the command line a second interpreter and all its imports.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import threading
@@ -49,10 +51,15 @@ class Guardian(ABC):
 
 
 @contextmanager
-def guardian_of(job: Job) -> Iterator[Guardian]:
-    """A guardian of a job; afterwards all of the run's processes are gone."""
+def guardian_of(job: Job, *, may_fork: bool) -> Iterator[Guardian]:
+    """A guardian of a job; afterwards all of the run's processes are gone.
+
+    Args:
+        job: what it guards.
+        may_fork: whether this process is there for this run alone.
+    """
     mark = os.urandom(16).hex()
-    if not _is_alone():
+    if not may_fork or not _has_one_thread():
         with _ending(_Fresh(job, mark), mark) as guardian:
             yield guardian
         return
@@ -112,6 +119,7 @@ class _Forked(Guardian):
     """A guardian that is a copy of this process."""
 
     def __init__(self, job: Job, mark: str) -> None:
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)  # ignored, as some leave it, nothing is waited for
         sys.stdout.flush()
         sys.stderr.flush()
         asking, telling = os.pipe(), os.pipe()
@@ -135,7 +143,7 @@ class _Forked(Guardian):
 
     def kill(self) -> None:
         """End it."""
-        os.kill(self._process, 9)
+        os.kill(self._process, signal.SIGKILL)
 
 
 def _be_guardian(job: Job, mark: str, asked: int, told: int) -> NoReturn:
@@ -160,8 +168,8 @@ def _be_guardian(job: Job, mark: str, asked: int, told: int) -> NoReturn:
         os._exit(code)
 
 
-def _is_alone() -> bool:
-    """Return whether this process has one thread, those of libraries included."""
+def _has_one_thread() -> bool:
+    """Return whether this process has one thread, those of libraries counted."""
     if sys.platform != "linux" or threading.active_count() > 1:
         return False
     try:

@@ -26,7 +26,7 @@ EVERYTHING = frozenset({"smash", "smash_baselines", "smash_analysis", "domains"}
 ROOMS = {
     "smash sweep": PLANNING,
     "smash scaling": PLANNING | {"smash/cli/scaling.py"},
-    "smash compare": PLANNING | ANALYSIS | {"smash/cli/compare.py"},
+    "smash compare": PLANNING | ANALYSIS | {"smash/cli/compare.py", "smash/experiments/comparison.py"},
     "smash frontier": PLANNING | ANALYSIS | {"smash/cli/frontier.py"},
     "smash report": ANALYSIS | {"smash/cli/report.py"},
     "python -m smash.experiments.studies.benchmark": PLANNING,

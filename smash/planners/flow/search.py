@@ -22,6 +22,7 @@ from smash.planners.protocol import Settings, SolveLog, left
 from smash.problem.errors import SmashError
 from smash.problem.model import Action, Instance
 from smash.problem.problem import Problem
+from smash.problem.rules import Law
 
 MOST_ARCS = 1_500_000
 """Arcs beyond which a model is not built: it would need some 10 GB and no solver would start on it in time."""
@@ -66,6 +67,7 @@ class FlowSearch:
         self.horizon = settings.horizon
         self.solving = Solving(settings, log, until)
         self.scope = scope_of(problem)
+        self._law = Law(self.scope.instance, problem.options, problem.kinds)  # idle buffers change no kind
         self.bound = step_bound(problem, self.scope)
         self.reaches = reaches_of(self.scope)
         log.prove(self.bound.least_cost, "moves")
@@ -128,7 +130,7 @@ class FlowSearch:
         return result
 
     def _decode(self, model: FlowModel, vector: Floats) -> Sequence[Action]:
-        return decode(model.motion(vector), self.scope.instance, self.problem.options)
+        return decode(model.motion(vector), self._law)
 
     def _start(self, model: FlowModel) -> Floats | None:
         return None if self.log.best is None else model.vector(motion_of(self.problem, self.scope, self.log.best))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from smash.planners.protocol import Method, Settings, SolveLog, ask, left, why_unsupported
+from smash.planners.protocol import Method, Settings, SolveLog, ask, left, why_refused
 from smash.planners.registry import get_planner
 from smash.problem.model import Action
 from smash.problem.problem import Problem
@@ -27,7 +27,7 @@ def warm_starts(settings: Settings, share: float) -> tuple[Method, ...]:
     name = settings.warm_start
 
     def takes(problem: Problem) -> str | None:
-        return why_unsupported(get_planner(name), problem, settings.cold)
+        return why_refused(get_planner(name), problem, settings.cold)
 
     def run(problem: Problem, log: SolveLog, until: float) -> None:
         def offer(_seconds: float, _cost: int, actions: Sequence[Action]) -> None:

@@ -7,7 +7,7 @@ from smash.planners.protocol.answer import OnIncumbent, PlanResult
 from smash.planners.protocol.clock import SPARE_SECONDS, deadline_of, left
 from smash.planners.protocol.log import IncumbentLog, Relay, SolveLog
 from smash.planners.protocol.methods import Method, MethodPlanner, anything, not_plain, plain, walk
-from smash.planners.protocol.planner import BasePlanner, Planner, ProblemPlanner, ask, why_unsupported
+from smash.planners.protocol.planner import BasePlanner, Planner, ProblemPlanner, ask, why_refused, why_unsupported
 from smash.planners.protocol.settings import MOST_THREADS, Settings, SolveOptions, plan_options, settings_of
 
 __all__ = [
@@ -34,5 +34,6 @@ __all__ = [
     "plan_options",
     "settings_of",
     "walk",
+    "why_refused",
     "why_unsupported",
 ]

@@ -57,7 +57,7 @@ class PlanResult:
             planner=planner,
             options=PlanOptions(options.topple, options.max_topple, without=options.without),
             status=self.status,
-            actions=self.actions,
+            actions=None if self.actions is None else tuple(self.actions),
             lower_bound=self.lower_bound,
             bound_origin=self.bound_origin,
             incumbents=self.incumbents,

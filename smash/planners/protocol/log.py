@@ -190,10 +190,16 @@ class IncumbentLog(SolveLog):
             bound_origin: what proves that.
             details: what only this planner measures.
         """
-        if infeasible:
-            self.refute(bound_origin or "")
-        self.details |= details or {}
-        return PlanResult.of(self.plan())
+        plan = self.plan()
+        return PlanResult(
+            status="infeasible" if infeasible and plan.actions is None else plan.status,
+            actions=plan.actions,
+            lower_bound=plan.lower_bound,
+            bound_origin=bound_origin if infeasible else plan.bound_origin,
+            incumbents=plan.incumbents,
+            details=details or {},
+            priced=plan.stated_cost,
+        )
 
 
 @dataclass(frozen=True, slots=True)

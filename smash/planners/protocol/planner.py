@@ -78,7 +78,7 @@ class ProblemPlanner(BasePlanner, ABC):
         """Plan for at most `budget` seconds of wall time.
 
         Args:
-            problem: what to plan; `why_unsupported` must have nothing against it.
+            problem: what to plan; `why_refused` must have nothing against it.
             settings: how to solve it.
             budget: seconds of wall time.
             on_incumbent: called with every better plan, its `bound` with every better bound.
@@ -100,7 +100,7 @@ class ProblemPlanner(BasePlanner, ABC):
         return PlanResult.of(self.plan(problem, settings_of(options), budget, on_incumbent))
 
 
-def why_unsupported(planner: Planner, problem: Problem, settings: Settings) -> str | None:
+def why_refused(planner: Planner, problem: Problem, settings: Settings) -> str | None:
     """Return why a planner cannot take a problem, or None: asked before it starts.
 
     An action that it does not know, or costs that it does not weigh, would make its proofs wrong.
@@ -125,6 +125,11 @@ def why_unsupported(planner: Planner, problem: Problem, settings: Settings) -> s
     return None if ask is None else ask(instance, SolveOptions.of(problem.options, settings))
 
 
+def why_unsupported(planner: Planner, instance: Instance, options: PlanOptions) -> str | None:
+    """Return why a planner cannot take an instance, or None: `why_refused` for those who know no `Problem`."""
+    return why_refused(planner, Problem(instance, plan_options(options)), settings_of(options))
+
+
 def ask(
     planner: Planner,
     problem: Problem,
@@ -138,7 +143,7 @@ def ask(
 
     Args:
         planner: ours, or any object with `solve`.
-        problem: what to plan; `why_unsupported` must have nothing against it.
+        problem: what to plan; `why_refused` must have nothing against it.
         settings: how to solve it.
         budget: seconds of wall time.
         on_incumbent: called with every better plan.

@@ -1,1 +1,5 @@
 """Blocks-world problems in PDDL as instances of the testbed."""
+
+from smash.problem.blocksworld.problem_file import blocksworld_instance, read_blocksworld
+
+__all__ = ["blocksworld_instance", "read_blocksworld"]

@@ -236,7 +236,7 @@ def test_any_plan_fits_the_steps_of_its_cost_and_its_buffers_can_be_renamed(walk
     scope = scope_of(problem)
     motion = motion_of(problem, scope, actions)
     assert motion_fault(motion) is None
-    decoded = decode(motion, scope.instance)
+    decoded = decode(motion, Law(scope.instance))
     assert Law(scope.instance).check(decoded).accepted
     assert len(decoded) <= len(actions)
 
@@ -274,4 +274,4 @@ def test_blocks_of_a_correct_bottom_part_are_left_out(data):
 def test_encoding_keeps_the_goal_reached():
     instance = read_instance(EXAMPLES / "figure1.json")
     plan = solve(instance).actions
-    assert Law(instance).check(decode(encode(instance, plan), instance)).accepted
+    assert Law(instance).check(decode(encode(instance, plan), Law(instance))).accepted

@@ -9,7 +9,7 @@ from smash.planners.layered import LayeredPlanner
 from smash.planners.layered.network.moving import Moving
 from smash.planners.layered.network.relaxed import build_relaxed
 from smash.planners.milp.solvers import highs
-from smash.planners.protocol import Settings, SolveOptions, why_unsupported
+from smash.planners.protocol import Settings, SolveOptions, why_refused
 from smash.problem import (
     Carry,
     Costs,
@@ -137,4 +137,4 @@ def test_a_horizon_that_is_too_short_proves_nothing():
 
 
 def test_it_takes_the_whole_family():
-    assert why_unsupported(LayeredPlanner(), Problem(read_instance(SCOOP)), Settings()) is None
+    assert why_refused(LayeredPlanner(), Problem(read_instance(SCOOP)), Settings()) is None

@@ -45,7 +45,8 @@ def test_plans_are_taken_under_the_others_name_and_proofs_are_not():
     assert (log.cost, log.entries[0].origin, log.bound) == (2, "astar", None)
 
 
-def test_a_planner_that_reports_nothing_is_taken_at_its_answer_and_starts_cold(outsider):
+@pytest.mark.usefixtures("outsider")
+def test_a_planner_that_reports_nothing_is_taken_at_its_answer_and_starts_cold():
     (method,) = warm_starts(Settings(warm_start="outsider", horizon=3, seed=7), 0.1)
     log = SolveLog(problem())
     method.run(log.problem, log, perf_counter() - 1)
@@ -55,7 +56,8 @@ def test_a_planner_that_reports_nothing_is_taken_at_its_answer_and_starts_cold(o
     assert budget > 0
 
 
-def test_a_problem_that_the_other_does_not_take_goes_without(outsider):
+@pytest.mark.usefixtures("outsider")
+def test_a_problem_that_the_other_does_not_take_goes_without():
     (method,) = warm_starts(Settings(warm_start="outsider"), 0.1)
     assert "lift" in method.takes(problem(capacities={"lift": 2}))
 

@@ -1,0 +1,75 @@
+"""An executor for a plan: what an episode at the command line, from Python and of a sweep all begin with."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from smash.problem.errors import RefusedPlan
+from smash.problem.model import Instance
+from smash.problem.plan import Plan, check_plan
+
+if TYPE_CHECKING:
+    from smash.execution.executor import Executor
+    from smash.execution.physics.world import Frame
+    from smash.execution.scene.tabletop import Tabletop
+    from smash.records.episodes import Performed
+
+REPLAN_BUDGET = 10.0
+"""Wall time of each replanning, where none is given [s]."""
+
+
+def executor_of(
+    instance: Instance,
+    plan: Plan,
+    *,
+    seed: int = 0,
+    replan: bool = True,
+    scene: str | os.PathLike[str] | Tabletop | None = None,
+    replanner: str | None = None,
+    budget: float = REPLAN_BUDGET,
+    gui: bool = False,
+    on_frame: Frame | None = None,
+    on_step: Callable[[Performed], Any] | None = None,
+) -> Executor:
+    """Return an executor of a legal plan, to be run once.
+
+    Args:
+        instance: the problem.
+        plan: a plan for it.
+        seed: of the blocks' start poses, and for planners that draw.
+        replan: whether to plan anew where an action cannot be done.
+        scene: the path of a scene file, or a scene (None: the built-in one).
+        replanner: planner to replan with (None: the plan's own); `greedy` where nobody is called so.
+        budget: wall time of each replanning [s].
+        gui: show PyBullet's window.
+        on_frame: called with the world 25 times a simulated second.
+        on_step: called with each action before it is carried out.
+
+    Raises:
+        RefusedPlan: where the law refuses the plan.
+        SmashError: where the scene is malformed, or has no place for the instance.
+    """
+    verdict = check_plan(instance, plan)
+    if not verdict.accepted:
+        raise RefusedPlan(f"the plan for {instance.name!r}: {verdict}")
+    from smash.execution.executor import Executor
+    from smash.execution.policy import OPEN
+    from smash.execution.scene.scene_file import default_scene, read_scene
+    from smash.execution.scene.tabletop import Tabletop
+    from smash.experiments.episodes.replanning import replanner as replanner_by
+
+    if not isinstance(scene, Tabletop):
+        scene = default_scene() if scene is None else read_scene(scene)
+    return Executor(
+        instance,
+        plan,
+        scene,
+        seed=seed,
+        policy=None if replan else OPEN,
+        replanner=replanner_by(replanner or plan.planner, budget, seed) if replan else None,
+        gui=gui,
+        on_frame=on_frame,
+        on_step=on_step,
+    )
