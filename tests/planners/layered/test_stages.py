@@ -5,13 +5,14 @@ import math
 import pytest
 from hypothesis import assume, given, settings
 
+from smash.planners.greedy import greedy_plans
 from smash.planners.layered import LayeredPlanner
 from smash.planners.layered.blocks import MovingBlocks
 from smash.planners.layered.events import build_layered
 from smash.planners.layered.horizons import short_layers, sound_layers
 from smash.planners.layered.stages import ContractedStages
 from smash.planners.protocol import Settings, SolveLog
-from smash.problem import OnGoal, PlanOptions
+from smash.problem import OnGoal, PlanOptions, PositionsGoal
 from smash.problem.problem import Problem
 from smash.problem.sets.generators import generate
 from tests.oracle import optimal_cost
@@ -79,8 +80,10 @@ def test_the_first_model_is_the_relaxation_at_the_last_of_its_horizons(horizon, 
 
 
 def test_each_misplaced_block_is_a_bound_of_two():
-    log = ran("moves", problem({"s": "ab", "t": "c"}, {"s": "a", "t": "cb"}))
+    made = problem({"s": "abc"}, PositionsGoal({"a": ("t", 1)}))  # b and c may lie where they fall
+    log = ran("moves", made)
     assert (log.bound, log.cost) == (2, None)
+    assert optimal_cost(made.instance) == 3
 
 
 def test_a_solution_whose_blocks_find_no_place_to_rest_is_no_plan():
@@ -100,6 +103,7 @@ def test_a_goal_chain_that_may_be_built_anywhere_has_no_resting_places():
 def test_resting_places_give_plans_and_prove_nothing(blocks, buffers, topple):
     made = drawn(blocks, buffers, topple)
     log = ran("resting", made)
+    assert log.details["stages"][0]["horizon"] == sound_layers(MovingBlocks.of(made))
     judge(log, optimal_cost(made.instance, made.options))
     assert log.bound is None
     assert log.details["stages"][0]["status"] == "optimal" or log.cost is None
@@ -111,6 +115,16 @@ def test_positions_alone_prove_the_optimum(options, cost):
     log = ran("positions", reversal(options=options))
     assert (log.cost, log.bound) == (cost, cost)
     assert log.bound_origin.startswith("layered positions")
+
+
+def test_positions_in_too_few_layers_for_every_cheaper_plan_prove_nothing():
+    made = drawn(5, 0, False)
+    short = short_layers(MovingBlocks.of(made))
+    log = SolveLog(made)
+    log.offer(next(greedy_plans(made, math.inf, 0)), "known")
+    assert short < (log.cost - 1) // 2
+    ran("positions", made, short, log)
+    assert (log.bound, log.details["stages"][0]["status"]) == (None, "infeasible")
 
 
 @settings(max_examples=25, deadline=None)
