@@ -1,15 +1,17 @@
 """The default planner: the optimum of exhaustive search, its parts merged under one budget."""
 
 import dataclasses
+import math
 
 import pytest
 from hypothesis import given, settings
 
 from smash.planners.portfolio import SmashPlanner
 from smash.planners.precedence import PrecedencePlanner
-from smash.planners.protocol import SolveOptions
-from smash.problem import Law, PlanOptions, make_instance
+from smash.planners.protocol import Settings, SolveLog, SolveOptions
+from smash.problem import Costs, Law, PlanOptions, make_instance
 from smash.problem.model import StacksGoal
+from smash.problem.problem import Problem
 from smash.problem.sets.generators import generate
 from smash.problem.sets.suites import read_suite
 from tests.oracle import optimal_cost
@@ -113,3 +115,58 @@ def test_a_beam_that_left_nothing_out_proves_the_plan_under_its_own_name(monkeyp
     result = SmashPlanner().solve(instance, SolveOptions(topple=False), 20)
     assert (result.status, result.bound_origin) == ("optimal", "beam")
     assert result.cost == optimal_cost(instance, PlanOptions(topple=False))
+
+
+def sized(blocks, *, is_plain=True):
+    """Return a problem of so many blocks, plain or with another cost."""
+    costs = Costs() if is_plain else Costs({"pick": 3})
+    return Problem(dataclasses.replace(generate("multi", blocks, buffers=2)[0], costs=costs))
+
+
+def rows(problem):
+    """Return (name, share, most seconds) of each method that takes a problem, in their order."""
+    methods = [method for method in SmashPlanner().methods(problem, Settings()) if method.takes(problem) is None]
+    return [(m.name, m.share() if callable(m.share) else m.share, m.most) for m in methods]
+
+
+FIRST = [("greedy", 0.1, math.inf), ("light search", 1.0, 0.12)]
+LAST = [("beam", 0.7, math.inf), ("search to the end", 1.0, math.inf), ("beam to the end", 1.0, math.inf)]
+LAYERED = ("layered", 0.5, math.inf)
+
+
+def test_up_to_twelve_blocks_the_search_comes_before_the_precedence_graph():
+    exact = [("search", 0.6, math.inf), ("precedence", 0.3, math.inf)]
+    assert rows(sized(12)) == [*FIRST, *exact, LAYERED, *LAST]
+
+
+@pytest.mark.parametrize(
+    ("blocks", "precedence", "search", "layered"),
+    [(13, 0.3, 0.4, [LAYERED]), (40, 0.3, 0.4, [LAYERED]), (41, 0.6, 0.2, [])],
+)
+def test_with_more_blocks_beams_help_and_beyond_forty_the_layered_model_proves_nothing(
+    blocks, precedence, search, layered
+):
+    exact = [
+        ("precedence", precedence, math.inf),
+        ("greedy passes", 0.1, 1.0),
+        ("first beam", 0.1, 1.0),
+        ("search", search, math.inf),
+    ]
+    assert rows(sized(blocks)) == [*FIRST, *exact, *layered, *LAST]
+
+
+@pytest.mark.parametrize(("blocks", "layered"), [(5, [("layered", 1.0, math.inf)]), (41, [])])
+def test_costs_are_left_to_the_search_over_the_laws_states_and_to_the_layered_model(blocks, layered):
+    general = [("greedy", 0.1, math.inf), ("the law's states", 0.6, math.inf)]
+    assert rows(sized(blocks, is_plain=False)) == [*general, *layered]
+
+
+def test_the_beam_has_all_that_is_left_once_the_search_has_ended():
+    problem = sized(4)
+    methods = {method.name: method for method in SmashPlanner().methods(problem, Settings())}
+    log = SolveLog(problem)
+    methods["greedy"].run(problem, log, math.inf)
+    assert methods["beam"].share() == 0.7
+    methods["search"].run(problem, log, math.inf)
+    assert methods["beam"].share() == 1.0
+    assert log.details["search"] == "proven"

@@ -14,6 +14,7 @@ from time import perf_counter
 import highspy
 import numpy as np
 
+from smash.planners.milp.solvers import highs
 from smash.planners.precedence.cycles import CycleFinder
 from smash.planners.precedence.dive import EventOrder, dive
 from smash.planners.precedence.graph import Floats, PrecedenceGraph
@@ -157,7 +158,7 @@ class HittingSetSolver:
             solution = highspy.HighsSolution()
             solution.col_value = [float(choice in known) for choice in range(len(self._costs))]
             self._model.setSolution(solution)
-        self._model.run()
+        highs.run(self._model)
         return bool(self._model.getModelStatus() == highspy.HighsModelStatus.kOptimal)
 
     def _relax(self, deadline: float) -> Floats | None:

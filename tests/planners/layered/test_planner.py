@@ -13,8 +13,8 @@ from smash.planners.layered.plain_positions import build_plain_positions
 from smash.planners.layered.resting import build_resting
 from smash.planners.milp import solving
 from smash.planners.milp.arrays import OutOfTime
-from smash.planners.protocol import SolveOptions
-from smash.problem import Law
+from smash.planners.protocol import Settings, SolveLog, SolveOptions
+from smash.problem import Costs, Law, StacksGoal, make_instance
 from smash.problem.problem import Problem
 from smash.problem.sets.generators import generate
 from smash.problem.sets.suites import read_suite
@@ -107,3 +107,32 @@ def test_what_takes_too_long_to_build_is_left_out(monkeypatch):
 def test_what_would_take_too_long_to_load_is_not_begun():
     result = solve(generate("multi", 40, buffers=2, seed=5)[0], SolveOptions(topple=False), budget=0.5)
     assert "to build" in result.details["stages"][-1]["skipped"]
+
+
+def test_the_plain_twin_is_planned_cold_for_first_plans():
+    asked = []
+
+    class Noting(LayeredPlanner):
+        def plan(self, problem, settings, budget, on_incumbent=None):
+            asked.append((problem, settings))
+            return super().plan(problem, settings, budget, on_incumbent)
+
+    goal = StacksGoal({"s": ("b", "a")})
+    instance = make_instance(
+        {"s": ["a", "b"]}, goal, stacks=["s", "t"], capacities={"lift": 2}, costs=Costs({"pick": 3})
+    )
+    made, chosen = Problem(instance), Settings(warm_start="greedy", threads=2, seed=3)
+    log = SolveLog(made)
+    (twin,) = [method for method in Noting().methods(made, chosen) if method.name == "plain twin"]
+    twin.run(made, log, perf_counter() + 20.0)
+    assert asked == [(made.twin, Settings(threads=2, seed=3))]
+    assert made.law.check(log.best).cost == log.cost
+    assert (log.bound, twin.share) == (None, 0.1)
+
+
+@pytest.mark.parametrize(("horizon", "taken"), [(None, True), (5, False)])
+def test_a_chosen_horizon_leaves_the_plain_twin_out(horizon, taken):
+    made = Problem(make_instance({"s": ["a", "b"]}, {"s": ["b", "a"]}, buffers=1, costs=Costs({"pick": 3})))
+    methods = LayeredPlanner().methods(made, Settings(horizon=horizon))
+    (twin,) = [method for method in methods if method.name == "plain twin"]
+    assert (twin.takes(made) is None) == taken

@@ -59,6 +59,11 @@ def test_a_solve_ends_where_it_is_asked_to():
     assert result.nodes <= 1
 
 
+@pytest.mark.parametrize("threads", [(1, 2, 1), (2, 2, 3)])
+def test_each_solve_may_have_another_number_of_threads(threads):
+    assert [highs.solve(cover(), time_limit=10, threads=count).status for count in threads] == ["optimal"] * 3
+
+
 def test_a_model_is_written_with_the_names_of_its_columns(tmp_path):
     highs.write(cover(), tmp_path / "m.mps")
     assert "take_3" in (tmp_path / "m.mps").read_text()

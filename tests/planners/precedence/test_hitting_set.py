@@ -24,6 +24,12 @@ def test_the_set_is_as_cheap_as_the_cheapest_of_all_sets_that_hit(instance, opti
     assert found.bound == solver.cost(found.chosen) == cheapest_hitting_cost(graph)
 
 
+def test_each_solve_may_have_another_number_of_threads():
+    graph = build_graph(Problem(wide(10, 4, 0), PlanOptions(topple=False)))
+    bounds = [HittingSetSolver(graph, threads).solve(math.inf).bound for threads in (1, 2, 3)]
+    assert bounds == [cheapest_hitting_cost(graph)] * 3
+
+
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("options", [PlanOptions(), PlanOptions(max_topple=2), PlanOptions(topple=False)])
 def test_rows_are_cycles_and_the_set_hits_each(seed, options):

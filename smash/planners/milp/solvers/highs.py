@@ -75,8 +75,21 @@ def solve(
                 event.interrupt()
 
         solver.cbMipInterrupt += interrupt
-    solver.run()
+    run(solver)
     return _result(solver, model, perf_counter() - began)
+
+
+def run(solver: Any) -> None:
+    """Run HiGHS, with whatever number of threads it ran before.
+
+    It keeps the threads of the first run, and refuses to run with another number of them until they are given up.
+    """
+    import highspy
+
+    refused = solver.run() == highspy.HighsStatus.kError
+    if refused and solver.getModelStatus() == highspy.HighsModelStatus.kNotset:
+        highspy.Highs.resetGlobalScheduler(True)
+        solver.run()
 
 
 def write(model: Milp, path: Path) -> None:
