@@ -155,7 +155,7 @@ def test_with_more_blocks_beams_help_and_beyond_forty_the_layered_model_proves_n
     assert rows(sized(blocks)) == [*FIRST, *exact, *layered, *LAST]
 
 
-@pytest.mark.parametrize(("blocks", "layered"), [(5, [("layered", 1.0, math.inf)]), (41, [])])
+@pytest.mark.parametrize(("blocks", "layered"), [(5, [("layered to the end", 1.0, math.inf)]), (41, [])])
 def test_costs_are_left_to_the_search_over_the_laws_states_and_to_the_layered_model(blocks, layered):
     general = [("greedy", 0.1, math.inf), ("the law's states", 0.6, math.inf)]
     assert rows(sized(blocks, is_plain=False)) == [*general, *layered]

@@ -67,7 +67,8 @@ def build_relaxed(
         problem: what is planned.
         moving: its moving blocks.
         horizon: number of layers.
-        lower_bound: a proven bound on the cost of every plan, as a row.
+        lower_bound: a bound on the cost of every solution, as a row: one that a coarser relaxation has proven. What
+            bounds plans alone may be above what this relaxation costs, and would cut that off.
         upper_bound: only plans cheaper than this are of interest (None: all are).
         deadline: when to give up [s, clock of `perf_counter`].
         ordered: keep the order of what rests on one another (`smash.planners.layered.network.resting_order`).
