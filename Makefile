@@ -22,6 +22,7 @@ install: needs-planning ## set up .venv for planning
 	@echo 'smash: ready. $(BIN)/smash plan examples/figure1.json (or first: source $(BIN)/activate)'
 
 install-all: needs-all-dev ## set up .venv with all that its Python can have, and the tools of developers
+	@$(BIN)/python -c 'import pybullet' 2>/dev/null || echo 'smash: execution is left out: PyBullet has no wheels for this Python (3.11 has them)'
 	@echo 'smash: ready. $(BIN)/smash plan examples/figure1.json (or first: source $(BIN)/activate)'
 
 clean: ## remove what was set up, compiled and built; runs/ stays

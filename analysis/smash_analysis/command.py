@@ -6,8 +6,15 @@ import argparse
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import NoReturn
 
 from smash.problem.errors import SmashError
+
+
+def fail(error: SmashError) -> NoReturn:
+    """End with one line on stderr and the exit code of the error."""
+    print(f"smash: {error}", file=sys.stderr)
+    sys.exit(error.exit_code)
 
 
 def run(
@@ -30,7 +37,7 @@ def run(
     try:
         files = make(arguments.results, out)
     except SmashError as error:
-        sys.exit(f"analysis: {error}")
+        fail(error)
     if shown:
         print((out / shown).read_text(encoding="utf-8"))
     print("\n".join(str(file) for file in files))

@@ -7,7 +7,6 @@ RESULTS holds the episodes of the same plans in scenes of different friction, MA
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -19,6 +18,7 @@ from matplotlib.figure import Figure
 from smash.problem.errors import SmashError
 from smash.records.files import TRIALS
 from smash.records.reading import finished
+from smash_analysis.command import fail
 from smash_analysis.execution_tables import WITHOUT, paired_table, read_episodes
 from smash_analysis.statistics.intervals import success_rate, wilson
 from smash_analysis.tables.writing import RATES, SPREADS, markdown, rate_cell
@@ -184,7 +184,7 @@ def main() -> None:
     try:
         files = make(arguments.results, arguments.maps, arguments.out or arguments.results / "tables")
     except SmashError as error:
-        sys.exit(f"analysis: {error}")
+        fail(error)
     print("\n".join(str(file) for file in files))
 
 

@@ -132,12 +132,12 @@ def main() -> None:
     parser.add_argument("--root", type=Path, default=ROOT, help="of README.md and docs/ (default: the repository)")
     arguments = parser.parse_args()
     if arguments.root == ROOT and not (ROOT / "README.md").is_file():
-        sys.exit("analysis: no README.md here: run it in a checkout of the repository, or give --root and --results")
+        sys.exit("smash: no README.md here: run it in a checkout of the repository, or give --root and --results")
     try:
         for name, what in update(arguments.results, arguments.root):
             print(f"{name}: {what}")
     except OSError as error:
-        sys.exit(f"analysis: {error.filename}: {error.strerror}")
+        sys.exit(f"smash: {error.filename}: {error.strerror}")
 
 
 if __name__ == "__main__":

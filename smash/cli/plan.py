@@ -17,7 +17,8 @@ from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import DEFAULT_MEMORY, Job, Report
 from smash.experiments.planning import failure
 from smash.planners.protocol import MOST_THREADS, OnIncumbent, Settings
-from smash.planners.registry import DEFAULT
+from smash.planners.registry import DEFAULT, why_unknown
+from smash.problem.errors import SmashError
 from smash.problem.files.documents import require_writable, write_text
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import plan_text
@@ -85,6 +86,8 @@ def command(
     if estimates is not None:
         max_topple = _trusted(estimates, max_topple)
         no_topple = no_topple or max_topple == 0
+    if warm_start is not None and (unknown := why_unknown(warm_start)) is not None:
+        raise SmashError(unknown)
     problem = Problem(read_instance(instance), PlanOptions(not no_topple, max_topple or None, without=without))
     job = Job(planner, problem, Settings(warm_start, horizon, threads, seed), budget, memory)
     if math.isnan(budget):

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from smash.experiments.sweeps.experiment import Experiment, PlannerEntry, Run, check_experiment, experiment_runs
 from smash.experiments.sweeps.sweep import local_task, sweep
+from smash.problem.arguments import text
 from smash.problem.errors import SmashError
 from smash.problem.extras import TABLES, require
 from smash.problem.files.given import GivenInstance, given_instance
@@ -38,7 +39,7 @@ def compare(
     planners: str | Iterable[str],
     *,
     budget: float = 30.0,
-    variants: Sequence[str] = ("topple",),
+    variants: str | Sequence[str] = ("topple",),
 ) -> pd.DataFrame:
     """Run every planner on every instance, each run in processes of its own, and return one row a run.
 
@@ -49,7 +50,7 @@ def compare(
         instances: the instances, or paths of their files; a name or a path alone is a set, as in `suite`.
         planners: names from `planner_names()`.
         budget: wall time of each run [s].
-        variants: what plans may use: `topple`, `no-topple`, `max-topple-3` and the like.
+        variants: what plans may use: `topple`, `no-topple`, `max-topple-3` and the like; one or several.
 
     Returns:
         A table with the columns `instance`, `planner`, `variant`; `status`, `cost` and `lower_bound` as in a plan;
@@ -66,7 +67,8 @@ def compare(
     from smash_analysis.metrics import metric_names
 
     chosen = _chosen(instances)
-    names = (planners,) if isinstance(planners, str) else tuple(planners)
+    names = [text("planners", name) for name in ((planners,) if isinstance(planners, str) else planners)]
+    variants = (variants,) if isinstance(variants, str) else variants
     with TemporaryDirectory(prefix="smash-compare-") as folder:
         suite, out = Path(folder) / "instances", Path(folder) / "results"
         suite.mkdir()

@@ -6,6 +6,7 @@ import os
 from typing import TYPE_CHECKING
 
 from smash.experiments.episodes.executors import executor_of
+from smash.problem.arguments import whole_number
 from smash.problem.errors import SmashError
 from smash.problem.extras import EXECUTION, require
 from smash.problem.files.given import GivenInstance, GivenPlan, given_instance, given_plan
@@ -52,7 +53,6 @@ def execute(
     for what, asked in (("engine", engine), ("robot", robot)):
         if asked is not None:
             raise SmashError(f"{what}: {asked!r} is not allowed; there is no choice of one, None is allowed")
-    if not 0 <= seed < 2**31:
-        raise SmashError(f"seed: {seed} is not allowed; 0 to {2**31 - 1}")
+    whole_number("seed", seed, 0, 2**31 - 1)
     problem = given_instance(instance)
     return executor_of(problem, given_plan(plan, problem), seed=seed, replan=replan, scene=scene).run()

@@ -6,6 +6,7 @@ from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import Job, Report
 from smash.planners.protocol import Settings, ask
 from smash.planners.registry import DEFAULT, get_planner, make_ready
+from smash.problem.arguments import text, truth, whole_number
 from smash.problem.errors import PlannerCrashed, PlannerOutOfMemory, SmashError, Unsupported
 from smash.problem.files.given import GivenInstance, given_instance
 from smash.problem.model import Instance, PlanOptions
@@ -60,6 +61,8 @@ def plan(
         SmashError: where an argument is wrong.
     """
     _check(budget, max_topple, seed)
+    text("planner", planner)
+    topple, isolated = truth("topple", topple), truth("isolated", isolated)
     problem = Problem(given_instance(instance), PlanOptions(topple, max_topple))
     job = Job(planner, problem, Settings(seed=seed), budget)
     if not isolated:
@@ -87,12 +90,11 @@ def failure(report: Report, planner: str, where: str = "") -> SmashError | None:
 
 
 def _check(budget: float, max_topple: int | None, seed: int) -> None:
-    if not isinstance(budget, int | float) or not 0 < budget <= LONGEST:
+    if not isinstance(budget, int | float) or isinstance(budget, bool) or not 0 < budget <= LONGEST:
         raise SmashError(f"budget: {budget!r} is not allowed; seconds above 0")
-    if max_topple is not None and (not isinstance(max_topple, int) or max_topple < 1):
-        raise SmashError(f"max_topple: {max_topple!r} is not allowed; None, or 1 and more")
-    if not isinstance(seed, int) or seed < 0:
-        raise SmashError(f"seed: {seed!r} is not allowed; 0 and more")
+    if max_topple is not None:
+        whole_number("max_topple", max_topple, 1)
+    whole_number("seed", seed, 0)
 
 
 def _planned_here(job: Job) -> Plan:

@@ -67,7 +67,7 @@ def make_instance(
         standing = [*piles.values(), fallen, *(carrier.holds for carrier in holding)]
         blocks = dict.fromkeys(block for pile in standing for block in pile)
     instance = Instance(
-        name=name,
+        name=_name(name, where),
         blocks=_names("blocks", blocks, where),
         stacks=tuple(locations),
         buffers=tuple(named),
@@ -90,6 +90,12 @@ def _fresh(part: str, letter: str, count: int, taken: tuple[str, ...] | list[str
     if count < 0:
         raise MalformedFile(where, f"`{part}`: {count} is not allowed; names, or a number from 0")
     return list(itertools.islice(fresh_names(letter, {*taken, TABLE}), count))
+
+
+def _name(name: Any, where: str) -> str:
+    if not isinstance(name, str):
+        raise MalformedFile(where, f"`name`: {name!r} is no name; a string is one")
+    return name
 
 
 def _names(part: str, names: Any, where: str) -> tuple[str, ...]:

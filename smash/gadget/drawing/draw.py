@@ -14,7 +14,7 @@ from smash.gadget.drawing.style import STILLS, check_suffix, save
 from smash.gadget.encode import encode
 from smash.gadget.library import gadget_of
 from smash.gadget.motion import PebbleMotion
-from smash.problem.errors import SmashError
+from smash.problem.errors import RefusedPlan, SmashError
 from smash.problem.extras import require
 from smash.problem.files.given import GivenInstance, GivenPlan, given_instance, given_plan
 from smash.problem.model import Action, Instance
@@ -64,10 +64,12 @@ def motion_of(instance: Instance, plan: Plan) -> tuple[Instance, PebbleMotion]:
     """Return a plan as pebbles on the gadget, and the instance without the buffers that hold nothing at any time.
 
     Raises:
-        SmashError: where there is no plan, or the law refuses a step.
+        SmashError: where there is no plan, it is for another instance, or the law refuses a step.
     """
     if plan.actions is None:
         raise SmashError(f"there is no plan to draw: its status is {plan.status}")
+    if plan.instance != instance.name:
+        raise RefusedPlan(f"the plan is for instance {plan.instance!r}, not {instance.name!r}")
     shown = _without_idle_buffers(instance, plan.actions)
     return shown, encode(shown, plan.actions, gadget_of(shown, plan.options))
 

@@ -13,6 +13,7 @@ from typing import Any, Literal, cast
 
 import msgspec
 
+from smash.problem import arguments
 from smash.problem.costs import UNIT_COSTS, Costs
 from smash.problem.errors import MalformedFile
 from smash.problem.files.checking import checked
@@ -81,7 +82,7 @@ def read_instance(path: str | os.PathLike[str]) -> Instance:
     Raises:
         MalformedFile: with one line that says where and what is allowed.
     """
-    where = os.fspath(path)
+    where = arguments.path(path)
     return instance_from_document(parse_json(read_bytes(path), where), where)
 
 

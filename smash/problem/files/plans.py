@@ -12,6 +12,7 @@ from typing import Any, Literal, cast
 
 import msgspec
 
+from smash.problem import arguments
 from smash.problem.actions.registry import FAMILY, kind_of
 from smash.problem.errors import MalformedFile
 from smash.problem.files.documents import check_format, convert, one_key_a_line, parse_json, read_bytes, write_text
@@ -77,7 +78,7 @@ def read_plan(path: str | os.PathLike[str]) -> Plan:
     Raises:
         MalformedFile: with one line that says where and what is allowed.
     """
-    where = os.fspath(path)
+    where = arguments.path(path)
     return plan_from_document(parse_json(read_bytes(path), where), where)
 
 

@@ -11,6 +11,7 @@ import itertools
 import random
 from collections.abc import Sequence
 
+from smash.problem.arguments import whole_number
 from smash.problem.errors import SmashError
 from smash.problem.making import make_instance
 from smash.problem.model import Instance, PositionsGoal, StacksGoal
@@ -96,9 +97,15 @@ def generate(
     """
     if kind not in BENCHMARKS:
         raise SmashError(f"no benchmark is called {kind!r}; known: {', '.join(BENCHMARKS)}")
-    for what, number, least in (("stacks", stacks, 1), ("buffers", buffers, 0), ("count", count, 0)):
-        if number < least:
-            raise SmashError(f"{what}: {number} is not allowed; {least} and more")
+    least = (
+        ("blocks", blocks, 1),
+        ("stacks", stacks, 1),
+        ("buffers", buffers, 0),
+        ("count", count, 0),
+        ("seed", seed, 0),
+    )
+    for what, number, allowed in least:
+        whole_number(what, number, allowed)
     if blocks < stacks:
         raise SmashError(f"blocks: {blocks} are too few for {stacks} stacks, none of which is empty")
     size = f"{blocks}" if stacks == STACKS else f"{blocks}x{stacks}"

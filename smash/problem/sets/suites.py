@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
+from smash.problem import arguments
 from smash.problem.errors import MalformedFile
 from smash.problem.files.instances import read_instance
 from smash.problem.model import Instance
@@ -30,7 +31,7 @@ def suite_files(name: str | os.PathLike[str]) -> list[Path]:
     Raises:
         MalformedFile: where it is none of these, or holds no instance file.
     """
-    where = os.fspath(name)
+    where = arguments.path(name)
     directory = SUITES / where if where in suite_names() else Path(where)
     if directory.is_file():
         return [directory]
