@@ -16,8 +16,11 @@ def optimal_cost(instance: Instance, options: PlanOptions | None = None, most_st
     options = options or PlanOptions()
     stacks = len(instance.stacks)
     start = (tuple(instance.start[location] for location in instance.locations), frozenset(instance.table))
-    start = _canonical(start, stacks)
-    layers: list[list[State]] = [[start], [], []]
+    layers: list[list[State]] = [[_canonical(start, stacks)], [], []]
+    if instance.hand is not None:  # the first action is a place
+        piles, table = start
+        put = [(*piles[:at], (*pile, instance.hand), *piles[at + 1 :]) for at, pile in enumerate(piles)]
+        layers = [[], [_canonical((after, table), stacks) for after in put], []]
     seen: set[State] = set()
     cost = 0
     while any(layers):
@@ -81,4 +84,9 @@ def _holds(instance: Instance, state: State) -> bool:
         (index, height), (index_under, height_under) = where[upper], where[under]
         if index != index_under or height != height_under + 1:
             return False
-    return all(block in where and where[block][1] == 1 for block in goal.bottom)
+    if not all(block in where and where[block][1] == 1 for block in goal.bottom):
+        return False
+    if not all(block in table or (block in where and where[block][1] == 1) for block in goal.ontable):
+        return False
+    tops = {pile[-1] for pile in piles if pile}
+    return all(block in table or block in tops for block in goal.clear)

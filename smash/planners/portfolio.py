@@ -61,6 +61,7 @@ class SmashPlanner(MethodPlanner):
     proves: ClassVar[bool] = True
     aggregating: ClassVar[frozenset[str]] = frozenset(FAMILY)
     weighs: ClassVar[bool] = True
+    open_goals: ClassVar[bool] = True
     budget_dependent: ClassVar[bool] = True  # its parts get shares of the budget
     gentle: ClassVar[bool] = True
 

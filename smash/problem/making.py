@@ -27,6 +27,7 @@ def make_instance(
     carriers: Iterable[Carrier] = (),
     capacities: Mapping[str, int] | None = None,
     costs: Costs = UNIT_COSTS,
+    hand: str | None = None,
     where: str = "instance",
 ) -> Instance:
     """Build an instance and check it whole. A start and a goal are enough.
@@ -38,7 +39,8 @@ def make_instance(
         start: location -> blocks, bottom first. A location that it leaves out is empty.
         goal: a `StacksGoal`, `PositionsGoal` or `OnGoal`; a mapping is the whole arrangement, as in `StacksGoal`.
         name: the instance's name.
-        blocks: all blocks, in the order in which they are numbered; None: those of `start`, `table` and `carriers`.
+        blocks: all blocks, in the order in which they are numbered; None: those of `start`, `table`, `carriers` and
+            `hand`.
         stacks: names of stacks, which come first; locations that `start` and `goal` name beside them and beside the
             buffers are stacks too, in the order in which they appear. A number adds so many to those: `s1`, `s2`, …,
             names that are taken left out.
@@ -47,6 +49,7 @@ def make_instance(
         carriers: things that hold blocks and are moved with them.
         capacities: of the aggregating actions that need one: name -> most blocks.
         costs: what actions cost; every action 1, where it is left out.
+        hand: the block that the hand holds at the start.
         where: what errors call the instance.
 
     Raises:
@@ -64,7 +67,7 @@ def make_instance(
     if isinstance(buffers, int):
         named = _fresh("buffers", "u", buffers, locations, where)
     if blocks is None:
-        standing = [*piles.values(), fallen, *(carrier.holds for carrier in holding)]
+        standing = [*piles.values(), fallen, *(carrier.holds for carrier in holding), () if hand is None else (hand,)]
         blocks = dict.fromkeys(block for pile in standing for block in pile)
     instance = Instance(
         name=_name(name, where),
@@ -77,6 +80,7 @@ def make_instance(
         carriers=holding,
         capacities=dict(capacities or {}),
         costs=costs,
+        hand=hand,
     )
     return checked(instance, where)
 
@@ -127,8 +131,8 @@ def _goal(goal: Any, where: str) -> Goal:
             return StacksGoal(_piles("goal.stacks", stacks, where, letters=True))
         case PositionsGoal(positions):
             return PositionsGoal({block: _position(block, at, where) for block, at in positions.items()})
-        case OnGoal(on, bottom):
-            return OnGoal(dict(on), tuple(bottom))
+        case OnGoal(on, bottom, ontable, clear):
+            return OnGoal(dict(on), tuple(bottom), tuple(ontable), tuple(clear))
         case Mapping():
             return StacksGoal(_piles("goal", goal, where, letters=False))
         case _:

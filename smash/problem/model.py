@@ -78,16 +78,30 @@ class PositionsGoal:
 
 @dataclass(frozen=True, slots=True)
 class OnGoal:
-    """Relations only: `on[a] == b` wants a directly on b; each of `bottom` at the bottom of some location."""
+    """Relations only; any location serves (the classical blocks world, the paper's "goal sets").
+
+    One that contradicts itself (a block on itself, two directly on one) is well formed and has no plan.
+
+    Attributes:
+        on: `on[a] == b` wants a directly on b.
+        bottom: each of these at the bottom of some location.
+        ontable: each of these on the table: at the bottom of some location or in the table region.
+        clear: on each of these lies nothing.
+    """
 
     on: Mapping[str, str]
     bottom: tuple[str, ...] = ()
+    ontable: tuple[str, ...] = ()
+    clear: tuple[str, ...] = ()
 
     def __hash__(self) -> int:
-        return hash((frozenset(self.on.items()), self.bottom))
+        return hash((frozenset(self.on.items()), self.bottom, self.ontable, self.clear))
 
     def towers(self) -> list[tuple[str, ...]]:
-        """Return the goal's towers, bottom first; a block of `bottom` that carries nothing is one of height 1."""
+        """Return the goal's towers, bottom first; a block of `bottom` that carries nothing is one of height 1.
+
+        Blocks that would stand on themselves are in none.
+        """
         above = {under: upper for upper, under in self.on.items()}
         bases = [b for b in above if b not in self.on] + [b for b in self.bottom if b not in above]
         towers = []
@@ -134,8 +148,9 @@ class Carrier:
 class Instance:
     """One rearrangement problem. `start` names every location (empty ones too), bottom first.
 
-    `carriers`, `capacities` (of the aggregating actions that need one: name -> most blocks) and `costs` are what
-    version 2 of the format adds; without them the actions are pick, place and topple, each at cost 1.
+    `carriers`, `capacities` (of the aggregating actions that need one: name -> most blocks), `costs`, `hand` (the block
+    that the hand holds at the start) and an `on` goal's `ontable` and `clear` are what version 2 of the format adds;
+    without carriers, capacities and costs the actions are pick, place and topple, each at cost 1.
 
     Build it by `read_instance` or `make_instance`, which check it; the fields are then trusted. Equal instances have
     equal hashes, so that they can be kept in a set; nobody changes the mappings of one.
@@ -151,6 +166,7 @@ class Instance:
     carriers: tuple[Carrier, ...] = ()
     capacities: Mapping[str, int] = field(default_factory=dict)
     costs: Costs = UNIT_COSTS
+    hand: str | None = None
 
     @property
     def locations(self) -> tuple[str, ...]:
@@ -158,13 +174,15 @@ class Instance:
         return self.stacks + self.buffers
 
     def __hash__(self) -> int:
-        return hash((self.name, self.blocks, self.stacks, self.buffers, frozenset(self.start.items()), self.table))
+        start = frozenset(self.start.items())
+        return hash((self.name, self.blocks, self.stacks, self.buffers, start, self.table, self.hand))
 
     def __repr__(self) -> str:
         kind = type(self.goal).__name__
+        held = "" if self.hand is None else f"{self.hand!r} in the hand, "
         return (
             f"<Instance {self.name!r}: {_counted(len(self.blocks), 'block')} on {_counted(len(self.stacks), 'stack')} "
-            f"and {_counted(len(self.buffers), 'buffer')}, {kind}>"
+            f"and {_counted(len(self.buffers), 'buffer')}, {held}{kind}>"
         )
 
     def _repr_svg_(self) -> str | None:
@@ -257,6 +275,7 @@ class State:
         return cls(
             piles={location: list(instance.start.get(location, ())) for location in instance.locations},
             table=set(instance.table),
+            hand=instance.hand,
             carried={carrier.name: set(carrier.holds) for carrier in instance.carriers},
             stations={carrier.name: carrier.at for carrier in instance.carriers},
         )

@@ -15,6 +15,7 @@ from smash.problem.model import Instance, PlanOptions, State
 from smash.problem.rules import Law
 from smash.problem.views.demands import Demands, demands_of
 from smash.problem.views.numbered import Numbered
+from smash.problem.views.posed import open_rest, posed
 from smash.problem.views.twin import plain_twin
 
 if TYPE_CHECKING:
@@ -64,14 +65,24 @@ class Problem:
         return self.law.goal_shortfall(State.start_of(self.instance)) is None
 
     @cached_property
+    def posed(self) -> Instance:
+        """The instance with an equivalent goal that uses `bottom` in place of `ontable` and `clear` where it can."""
+        return posed(self.instance, falls=bool(self.kinds))
+
+    @cached_property
+    def open_rest(self) -> str | None:
+        """In a few words what the goal leaves open by `ontable` and `clear`; None where it comes to `bottom` alone."""
+        return open_rest(self.posed)
+
+    @cached_property
     def numbered(self) -> Numbered:
-        """The instance with numbers in place of names."""
-        return Numbered.of(self.instance)
+        """The posed instance with numbers in place of names; the hand must be empty at the start."""
+        return Numbered.of(self.posed)
 
     @cached_property
     def demands(self) -> Demands:
         """What the goal asks of the blocks: who must leave, who must be placed, in which order."""
-        return demands_of(self.instance)
+        return demands_of(self.posed)
 
     @cached_property
     def twin(self) -> Problem:

@@ -270,7 +270,13 @@ def _on_shortfall(goal: OnGoal, state: State) -> str | None:
     for upper, under in goal.on.items():
         if below.get(upper) != under:
             return f"block {upper!r} is not on {under!r}"
+    at_bottom = {block for block, under in below.items() if under is None}
     for block in goal.bottom:
-        if block not in below or below[block] is not None:
+        if block not in at_bottom:
             return f"block {block!r} is not at the bottom of a location"
-    return None
+    for block in goal.ontable:
+        if block not in at_bottom and block not in state.table:
+            return f"block {block!r} is neither at the bottom of a location nor in the table region"
+    above = {under: upper for upper, under in below.items()}
+    covered = next((block for block in goal.clear if block in above), None)
+    return None if covered is None else f"block {covered!r} is not clear, {above[covered]!r} lies on it"

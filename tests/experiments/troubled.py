@@ -11,6 +11,7 @@ from smash.problem import Pick, Place, Topple
 from smash.problem.plan import Incumbent
 
 SLEEPER = [sys.executable, "-c", "import time; time.sleep(600)"]
+SAID_ALL = [sys.executable, "-c", "import time; time.sleep(601)"]  # started once all has been streamed
 
 
 def detour(instance, rounds):
@@ -76,7 +77,7 @@ class HangsWithBounds:
             log.prove(bound, f"proof of {bound}")
         if options.topple:
             log.offer(detour(instance, 1), "mine")
-        subprocess.run(SLEEPER, check=False)
+        subprocess.run(SAID_ALL, check=False)
 
 
 class HangsProven(HangsWithBounds):
@@ -102,7 +103,7 @@ class LeavesChildren:
             subprocess.Popen(SLEEPER, start_new_session=True)
             os._exit(0)
         on_incumbent(0.0, 5, detour(instance, 1))
-        subprocess.run(SLEEPER, check=False)
+        subprocess.run(SAID_ALL, check=False)
 
 
 class EatsMemory:

@@ -26,6 +26,7 @@ class AStarPlanner(MethodPlanner):
     proves: ClassVar[bool] = True
     aggregating: ClassVar[frozenset[str]] = frozenset(FAMILY)
     weighs: ClassVar[bool] = True
+    open_goals: ClassVar[bool] = True
     gentle: ClassVar[bool] = True
 
     def methods(self, problem: Problem, settings: Settings) -> Sequence[Method]:

@@ -137,9 +137,12 @@ def _judge_towers(task: Task, cells: Ints) -> None:
         level = 0
         under_line = -1
         under_waits = False
+        covers = False
         while level < cells[task.length + slot]:
             block = cells[task.content + base + level]
             line = cells[task.line_of + block]
+            if covers or (level > 0 and cells[task.on_table + block] == 1):
+                break
             if line >= 0 and cells[task.index_of + block] > 0:
                 if under_line != line or cells[task.done + line] != cells[task.index_of + block]:
                     break
@@ -147,6 +150,7 @@ def _judge_towers(task: Task, cells: Ints) -> None:
                 break
             under_line = line
             under_waits = False
+            covers = cells[task.clear + block] == 1
             level += 1
             if line >= 0:
                 cells[task.done + line] = cells[task.index_of + block] + 1
@@ -167,9 +171,12 @@ def top_of(task: Task, cells: Ints, slot: int) -> int:
 
 
 def is_goal(task: Task, cells: Ints) -> bool:
-    """Return whether every line is built (after `judge`)."""
-    for line in range(task.lines):  # noqa: SIM110 (numba compiles no generators)
+    """Return whether every line is built and nothing has to leave its pile (after `judge`)."""
+    for line in range(task.lines):
         if cells[task.done + line] < line_size(task, cells, line):
+            return False
+    for slot in range(cells[task.counters]):  # noqa: SIM110 (numba compiles no generators)
+        if cells[task.keep + slot] < cells[task.length + slot]:
             return False
     return True
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import MutableSequence
 from typing import NamedTuple
 
-from smash.problem.model import PlanOptions
+from smash.problem.model import OnGoal, PlanOptions
 from smash.problem.views.numbered import Numbered
 from smash.problem.views.targets import Piles, goal_piles, towers_of
 
@@ -58,6 +58,10 @@ class Task(NamedTuple):
     """Per block its line, or -1 where the goal does not list it."""
     index_of: int
     """Per block its place in its line, 0 for the first."""
+    on_table: int
+    """Per block 1 where it must be at the bottom of a location or in the table region."""
+    clear: int
+    """Per block 1 where nothing may lie on it."""
 
     content: int
     """`slot * blocks + level`: the piles, bottom first."""
@@ -129,6 +133,7 @@ def make_setting(problem: Numbered, options: PlanOptions) -> Setting | None:
         "line_class": [next((c for c, kind in enumerate(kinds) if kind[0] == line), -1) for line in range(len(lines))],
         "line_grounded": grounded,
         **_listed(lines, problem.blocks),
+        **_resting(problem),
         **_scratch(problem.blocks, len(lines), len(kinds)),
     }
     cells: list[int] = []
@@ -161,6 +166,16 @@ def _listed(lines: Piles, blocks: int) -> dict[str, list[int]]:
         "line_blocks": [block for line in lines for block in line],
         "line_of": line_of,
         "index_of": index_of,
+    }
+
+
+def _resting(problem: Numbered) -> dict[str, list[int]]:
+    """Return the parts that hold what an `on` goal asks beside its lines."""
+    goal, blocks = problem.instance.goal, problem.instance.blocks
+    ontable, clear = (goal.ontable, goal.clear) if isinstance(goal, OnGoal) else ((), ())
+    return {
+        "on_table": [int(block in ontable) for block in blocks],
+        "clear": [int(block in clear) for block in blocks],
     }
 
 

@@ -20,6 +20,7 @@ class GreedyPlanner(MethodPlanner):
     summary: ClassVar[str] = "a plan at any size in near-linear time; infeasibility decided at once"
     aggregating: ClassVar[frozenset[str]] = frozenset(FAMILY)
     weighs: ClassVar[bool] = True
+    open_goals: ClassVar[bool] = True
     gentle: ClassVar[bool] = True
 
     def methods(self, problem: Problem, settings: Settings) -> Sequence[Method]:

@@ -22,6 +22,7 @@ class PrecedencePlanner(MethodPlanner):
 
     summary: ClassVar[str] = "exact: cheapest hitting set of the precedence graph's cycles (HiGHS), no time index"
     proves: ClassVar[bool] = True
+    open_goals: ClassVar[bool] = True
     gentle: ClassVar[bool] = True
 
     def prepare(self) -> None:

@@ -11,6 +11,7 @@ from typing import ClassVar
 
 from smash.planners.protocol.answer import OnIncumbent
 from smash.planners.protocol.clock import deadline_of, left
+from smash.planners.protocol.first_place import plan_first_places
 from smash.planners.protocol.log import SolveLog
 from smash.planners.protocol.planner import ProblemPlanner
 from smash.planners.protocol.settings import Settings
@@ -81,9 +82,11 @@ def walk(methods: Sequence[Method], log: SolveLog, deadline: float) -> None:
 class MethodPlanner(ProblemPlanner):
     """A planner that is a table of methods.
 
-    What start and goal alone decide is decided first: a start that fulfils the goal, a goal that no plan reaches.
+    What start and goal alone decide is decided first: a start that fulfils the goal, a goal that no plan reaches. A
+    start with a block in the hand is planned from every first place.
     """
 
+    holds: ClassVar[bool] = True
     gentle: ClassVar[bool] = False
     """Whether its plans let no block fall that can as well be picked from its stack."""
     kept_back: ClassVar[float] = 0.0
@@ -111,6 +114,10 @@ class MethodPlanner(ProblemPlanner):
             log.prove(0, "start")
         elif problem.infeasible is not None:
             log.refute("feasibility", problem.infeasible)
+        elif problem.instance.hand is not None:
+            plan_first_places(
+                problem, log, deadline, lambda rest, seconds, found: self.plan(rest, settings, seconds, found)
+            )
         else:
             if self.proves:
                 log.prove(0, "start")

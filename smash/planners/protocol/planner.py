@@ -30,6 +30,8 @@ class Planner(Protocol):
     - `proves: bool`, whether it can report `optimal`;
     - `aggregating: frozenset[str]`, the aggregating actions that it plans with (`topple` alone, where it says nothing);
     - `weighs: bool`, whether it takes instances whose actions do not all cost 1;
+    - `open_goals: bool`, whether it takes `on` goals whose `ontable` and `clear` leave open where blocks come to rest;
+    - `holds: bool`, whether it takes a start with a block in the hand;
     - `missing() -> str | None`, what is not installed that it needs;
     - `with_encoding(name) -> Planner`, the same planner on another PDDL encoding (`NAME:ENCODING`);
     - `build_model(instance, options) -> Milp`, the MILP that `solve` starts with, for `smash model`.
@@ -55,6 +57,8 @@ class BasePlanner:
     budget_dependent: ClassVar[bool] = False
     aggregating: ClassVar[frozenset[str]] = frozenset({"topple"})
     weighs: ClassVar[bool] = False
+    open_goals: ClassVar[bool] = False
+    holds: ClassVar[bool] = False
 
     def prepare(self) -> None:
         """Load what is loaded once and compile what is compiled once; not counted in the planner's time."""
@@ -119,10 +123,14 @@ def why_refused(planner: Planner, problem: Problem, settings: Settings) -> str |
         return "blocks start on a carrier"
     if not instance.costs.plain and not getattr(planner, "weighs", False):
         return f"it counts actions, and the instance's costs are in {instance.costs.unit}"
+    if instance.hand is not None and not getattr(planner, "holds", False):
+        return f"the hand holds {instance.hand!r} at the start"
+    if problem.open_rest is not None and not getattr(planner, "open_goals", False):
+        return problem.open_rest
     if isinstance(planner, ProblemPlanner):
         return planner.refuses(problem, settings)
     ask = getattr(planner, "unsupported", None)
-    return None if ask is None else ask(instance, SolveOptions.of(problem.options, settings))
+    return None if ask is None else ask(problem.posed, SolveOptions.of(problem.options, settings))
 
 
 def why_unsupported(planner: Planner, instance: Instance, options: PlanOptions) -> str | None:
@@ -158,7 +166,7 @@ def ask(
     if isinstance(planner, ProblemPlanner):
         return replace(planner.plan(problem, settings, budget, on_incumbent), planner=name)
     options = SolveOptions.of(problem.options, settings)
-    result = planner.solve(problem.instance, options, budget, on_incumbent)
+    result = planner.solve(problem.posed, options, budget, on_incumbent)
     try:
         return PlanResult.as_plan(result, problem.instance, name, problem.options)
     except AttributeError as error:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import NoReturn
 
@@ -125,9 +125,13 @@ class InstanceChecker:
                 self._block(f"start.{location}", block)
         for block in self.instance.table:
             self._block("table", block)
+        held = [] if self.instance.hand is None else [self.instance.hand]
+        for block in held:
+            self._block("hand", block)
         placed = [block for pile in self.instance.start.values() for block in pile] + list(self.instance.table)
-        placed += [block for carrier in self.instance.carriers for block in carrier.holds]
-        self._each_block_once("start, table and carriers" if self.instance.carriers else "start and table", placed)
+        placed += held + [block for carrier in self.instance.carriers for block in carrier.holds]
+        places = ["start", "table", *(["hand"] if held else []), *(["carriers"] if self.instance.carriers else [])]
+        self._each_block_once(f"{', '.join(places[:-1])} and {places[-1]}", placed)
 
     def _stacks_goal(self, goal: StacksGoal) -> None:
         for location, pile in goal.stacks.items():
@@ -154,30 +158,14 @@ class InstanceChecker:
                     self.refuse(part, f"height {height} of {location!r} floats: no block has height {height - 1}")
 
     def _on_goal(self, goal: OnGoal) -> None:
-        carried: dict[str, str] = {}
+        """Look at the names; a goal that contradicts itself is well formed (`smash.problem.feasibility`)."""
         for upper, under in goal.on.items():
             self._block("goal.on", upper)
             self._block(f"goal.on.{upper}", under)
-            other = carried.setdefault(under, upper)
-            if other != upper:
-                self.refuse(f"goal.on.{upper}", f"{under!r} already carries {other!r}; a block carries one")
-        self._once("goal.bottom", goal.bottom)
-        for block in goal.bottom:
-            self._block("goal.bottom", block)
-            if block in goal.on:
-                self.refuse("goal.bottom", f"block {block!r} is also on {goal.on[block]!r}")
-        self._acyclic(goal.on)
-
-    def _acyclic(self, on: Mapping[str, str]) -> None:
-        grounded: set[str] = set()
-        for block in on:
-            path: dict[str, None] = {}
-            while block in on and block not in grounded:
-                if block in path:
-                    self.refuse(f"goal.on.{block}", f"the block would stand on itself, through {len(path)} blocks")
-                path[block] = None
-                block = on[block]
-            grounded.update(path)
+        for part, blocks in (("bottom", goal.bottom), ("ontable", goal.ontable), ("clear", goal.clear)):
+            self._once(f"goal.{part}", blocks)
+            for block in blocks:
+                self._block(f"goal.{part}", block)
 
     def _each_block_once(self, part: str, placed: list[str]) -> None:
         self._once(part, placed)

@@ -1,6 +1,7 @@
 """Instance files: `smash-instance/1` and `/2`.
 
-Version 2 adds `carriers`, `capacities` and `costs`. What version 1 can say is written in version 1.
+Version 2 adds `carriers`, `capacities`, `costs`, `hand`, and `ontable` and `clear` of an `on` goal. What version 1 can
+say is written in version 1.
 
 Reading is strict: unknown keys, unknown names, a block twice or nowhere, a height that floats are refused
 by a `MalformedFile` whose one line says where and what is allowed.
@@ -28,6 +29,8 @@ GOAL_KEYS = {
     "on": ("kind", "on", "bottom"),
 }
 """Goal kind -> the keys of its object."""
+GOAL_KEYS_2 = {**GOAL_KEYS, "on": (*GOAL_KEYS["on"], "ontable", "clear")}
+"""The same for version 2."""
 
 
 class _StacksGoalFile(msgspec.Struct, forbid_unknown_fields=True, tag_field="kind", tag="stacks"):
@@ -41,6 +44,11 @@ class _PositionsGoalFile(msgspec.Struct, forbid_unknown_fields=True, tag_field="
 class _OnGoalFile(msgspec.Struct, forbid_unknown_fields=True, tag_field="kind", tag="on"):
     on: dict[str, str]
     bottom: list[str] = []
+
+
+class _OnGoalFile2(_OnGoalFile, tag="on"):
+    ontable: list[str] = []
+    clear: list[str] = []
 
 
 class _InstanceFile(msgspec.Struct, forbid_unknown_fields=True):
@@ -71,6 +79,8 @@ class _CostsFile(msgspec.Struct, forbid_unknown_fields=True):
 
 class _InstanceFile2(_InstanceFile):
     format: Literal["smash-instance/2"]  # type: ignore[assignment]
+    goal: _StacksGoalFile | _PositionsGoalFile | _OnGoalFile2
+    hand: str | None = None
     carriers: list[_CarrierFile] = []
     capacities: dict[str, int] = {}
     costs: _CostsFile = msgspec.field(default_factory=_CostsFile)
@@ -93,14 +103,16 @@ def instance_from_document(document: Any, where: str = "instance") -> Instance:
         MalformedFile: with one line that says where and what is allowed.
     """
     check_format(document, where, INSTANCE_FORMAT, INSTANCE_FORMAT_2)
-    _check_goal_keys(document.get("goal"), where)
     second = document["format"] == INSTANCE_FORMAT_2
+    _check_goal_keys(document.get("goal"), where, second=second)
     file = cast(_InstanceFile, convert(document, _InstanceFile2 if second else _InstanceFile, where))
     match file.goal:
         case _StacksGoalFile(stacks=stacks):
             goal: Goal = StacksGoal({location: tuple(pile) for location, pile in stacks.items()})
         case _PositionsGoalFile(positions=positions):
             goal = PositionsGoal(dict(positions))
+        case _OnGoalFile2(on=on, bottom=bottom, ontable=ontable, clear=clear):
+            goal = OnGoal(dict(on), tuple(bottom), tuple(ontable), tuple(clear))
         case _OnGoalFile(on=on, bottom=bottom):
             goal = OnGoal(dict(on), tuple(bottom))
     instance = Instance(
@@ -123,19 +135,22 @@ def _additions(file: _InstanceFile2) -> dict[str, Any]:
         "carriers": tuple(Carrier(c.name, tuple(c.stations), c.at, c.capacity, tuple(c.holds)) for c in file.carriers),
         "capacities": file.capacities,
         "costs": Costs(costs.actions, costs.travel, costs.positions, costs.unit),
+        "hand": file.hand,
     }
 
 
-def _check_goal_keys(goal: Any, where: str) -> None:
+def _check_goal_keys(goal: Any, where: str, *, second: bool) -> None:
     """Refuse an unknown goal kind or key, naming the allowed ones (msgspec names none)."""
     if not isinstance(goal, dict):
         return
-    kind = goal.get("kind")
-    if not isinstance(kind, str) or kind not in GOAL_KEYS:
-        raise MalformedFile(where, f"`goal.kind`: {kind!r} is not allowed; one of {', '.join(GOAL_KEYS)}")
+    kind, known = goal.get("kind"), GOAL_KEYS_2 if second else GOAL_KEYS
+    if not isinstance(kind, str) or kind not in known:
+        raise MalformedFile(where, f"`goal.kind`: {kind!r} is not allowed; one of {', '.join(known)}")
     for key in goal:
-        if key not in GOAL_KEYS[kind]:
-            raise MalformedFile(where, f"`goal`: unknown key {key!r}; allowed: {', '.join(GOAL_KEYS[kind])}")
+        if key in known[kind]:
+            continue
+        later = f"; {key!r} needs {INSTANCE_FORMAT_2!r}" if key in GOAL_KEYS_2[kind] else ""
+        raise MalformedFile(where, f"`goal`: unknown key {key!r}; allowed: {', '.join(known[kind])}{later}")
 
 
 def instance_document(instance: Instance) -> dict[str, Any]:
@@ -145,8 +160,9 @@ def instance_document(instance: Instance) -> dict[str, Any]:
             goal: dict[str, Any] = {"kind": "stacks", "stacks": {k: list(v) for k, v in stacks.items() if v}}
         case PositionsGoal(positions):
             goal = {"kind": "positions", "positions": {k: list(v) for k, v in positions.items()}}
-        case OnGoal(on, bottom):
+        case OnGoal(on, bottom, ontable, clear):
             goal = {"kind": "on", "on": dict(on), "bottom": list(bottom)}
+            goal |= {key: list(blocks) for key, blocks in (("ontable", ontable), ("clear", clear)) if blocks}
         case _:
             no_goal(instance.goal)
     document: dict[str, Any] = {
@@ -161,11 +177,14 @@ def instance_document(instance: Instance) -> dict[str, Any]:
     if instance.table:
         document["table"] = list(instance.table)
     additions = _addition_documents(instance)
-    return document | {"format": INSTANCE_FORMAT_2} | additions if additions else document
+    second = additions or not goal.keys() <= set(GOAL_KEYS[goal["kind"]])
+    return document | {"format": INSTANCE_FORMAT_2} | additions if second else document
 
 
 def _addition_documents(instance: Instance) -> dict[str, Any]:
     additions: dict[str, Any] = {}
+    if instance.hand is not None:
+        additions["hand"] = instance.hand
     if instance.carriers:
         additions["carriers"] = [msgspec.to_builtins(carrier) for carrier in instance.carriers]
     if instance.capacities:

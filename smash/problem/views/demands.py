@@ -77,7 +77,8 @@ def _located_demands(instance: Instance, goal: StacksGoal | PositionsGoal) -> De
 
 def _on_demands(instance: Instance, goal: OnGoal) -> Demands:
     above = {under: upper for upper, under in goal.on.items()}
-    bottom = frozenset(goal.bottom)
+    bottom, clear = frozenset(goal.bottom), frozenset(goal.clear)
+    grounded = bottom.union(goal.ontable)
     keep: dict[str, int] = {}
     stays: dict[str, str] = {}
     for location in instance.locations:
@@ -85,8 +86,9 @@ def _on_demands(instance: Instance, goal: OnGoal) -> Demands:
         under: str | None = None
         kept = 0
         for block in standing:
-            misplaced = goal.on.get(block, under) != under or (block in bottom and under is not None)
-            if misplaced or (under is not None and above.get(under, block) != block):
+            if goal.on.get(block, under) != under or (under is not None and block in grounded):
+                break
+            if under is not None and (under in clear or above.get(under, block) != block):
                 break
             stays[block] = location
             under = block

@@ -71,8 +71,10 @@ class Estimate:
         self.home: dict[str, tuple[str, int]] = {}
         self.under: dict[str, str] = {}
         self.bottom: frozenset[str] = frozenset()
+        self.ontable = self.clear = self.bottom
         if isinstance(goal, OnGoal):
             self.under, self.bottom = dict(goal.on), frozenset(goal.bottom)
+            self.ontable, self.clear = frozenset(goal.ontable), frozenset(goal.clear)
         else:
             piles = goal.stacks if isinstance(goal, StacksGoal) else goal.stacks()
             for location, pile in piles.items():
@@ -105,6 +107,8 @@ class Estimate:
         if block in self.home:
             return self.home[block] != (location, height)
         if self.whole or height <= self.depth.get(location, 0):
+            return True
+        if under is not None and (under in self.clear or block in self.ontable):
             return True
         if block in self.under:
             return self.under[block] != under
