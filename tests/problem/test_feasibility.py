@@ -74,7 +74,7 @@ def test_two_locations_without_topple_keep_their_line():
 
 def test_more_bottoms_than_locations_is_infeasible_even_with_topple():
     instance = make_instance(name="x", blocks="ab", stacks=["s1"], start={"s1": "ab"}, goal=OnGoal({}, ("a", "b")))
-    assert "there are 1 locations" in Problem(instance, PlanOptions()).infeasible
+    assert "there is 1 location" in Problem(instance, PlanOptions()).infeasible
 
 
 def test_nothing_to_do_is_feasible():
