@@ -27,7 +27,12 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "planners": ("smash.cli.planners", "list the planners, what they support and what is missing"),
     "certify": ("smash.cli.certify", "write down why no plan is cheaper"),
     "verify": ("smash.cli.verify", "check a plan and its certificate of optimality, without a solver"),
-    "import-blocks": ("smash.cli.import_blocks", "turn a blocks-world problem in PDDL into an instance"),
+    "import-blocks": (
+        "smash.cli.import_blocks",
+        "turn blocks-world problems in PDDL into instances, folders into sets",
+    ),
+    "import-plan": ("smash.cli.import_plan", "turn the plan of a PDDL planner into a plan of the testbed"),
+    "export-plan": ("smash.cli.export_plan", "write a plan as the steps of a PDDL planner"),
     "model": ("smash.cli.model", "write the MILP that a planner would solve"),
     "draw": ("smash.cli.draw", "draw a gadget, an instance, or a plan as moving pebbles"),
     "compare": ("smash.cli.compare", "planners on the same instances: coverage, times, costs, proofs, failures"),

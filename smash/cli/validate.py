@@ -7,27 +7,30 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
-from smash.problem.files.given import check
+from smash.cli.plan_files import of_pddl, read_plan_file
 from smash.problem.files.instances import read_instance
-from smash.problem.files.plans import read_plan
+from smash.problem.plan import check_plan
 
 
 @click.command("validate")
 @click.argument("instance", type=click.Path(path_type=Path))
 @click.argument("plan", type=click.Path(path_type=Path))
-def command(instance: Path, plan: Path) -> None:
+@of_pddl
+def command(instance: Path, plan: Path, problem: Path | None, domain: Path | None) -> None:
     """Judge a plan by the law: exit 0 where it is accepted, 3 where it is refused (with the step and the reason).
 
+    PLAN is a plan file of the testbed, or the answer of a PDDL planner (`smash import-plan --help` says which).
+
     \b
-    Example:
+    Examples:
       smash validate examples/figure1.json plan.json
+      smash validate blocks-16-1.json sas_plan
+      smash validate p01.json sas_plan --problem mystery/p01.pddl --domain mystery/domain.pddl
     """
-    filed = read_plan(plan)
-    problem = read_instance(instance)
-    verdict = check(problem, filed)
+    judged = read_instance(instance)
+    filed = read_plan_file(plan, judged, problem, domain)
+    verdict = check_plan(judged, filed.plan)
     if not verdict.accepted:
         fail(f"{plan}: {verdict}", 3)
-    costs, length = problem.costs, len(filed.actions or ())
-    click.echo(
-        f"accepted: {length} actions" if costs.plain else f"accepted: {length} actions, {filed.cost} {costs.unit}"
-    )
+    filed.say()
+    click.echo(f"accepted: {filed.counted(judged.costs)}")

@@ -26,6 +26,12 @@ class RefusedPlan(SmashError):
     exit_code = 3
 
 
+class Infeasible(SmashError):
+    """A problem without a plan, said where no instance can be made of it: the format cannot hold what it asks for."""
+
+    exit_code = 3
+
+
 class IllegalAction(SmashError):
     """An action that the law does not allow in the state at hand."""
 
