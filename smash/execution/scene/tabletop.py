@@ -14,7 +14,7 @@ from math import cos, hypot, pi, sin
 from smash.execution.scene.block_pose import QUARTER, BlockPose
 from smash.execution.scene.tray import Tray
 from smash.problem.errors import SmashError
-from smash.problem.model import Instance
+from smash.problem.model import Instance, OnGoal
 
 DIRECTIONS: Mapping[str, float] = {
     "counter-clockwise": pi / 2,
@@ -149,11 +149,21 @@ class Tabletop:
             if wanted > room:
                 raise DoesNotFit(
                     f"instance {instance.name!r} has {wanted} {what}; scene {self.name!r} has room for {room}"
+                    + (self._import_that_fits(instance) if what in ("stacks", "buffers") else "")
                 )
         return {
             **dict(zip(instance.stacks, self.stacks, strict=False)),
             **dict(zip(instance.buffers, self.buffers, strict=False)),
         }
+
+    def _import_that_fits(self, instance: Instance) -> str:
+        """Say how a problem without places of its own is imported for this scene; nothing for another one."""
+        piles = sum(bool(pile) for pile in instance.start.values())
+        fits = piles <= len(self.stacks) + len(self.buffers) and len(instance.blocks) <= self.highest
+        if not isinstance(instance.goal, OnGoal) or not fits:
+            return ""
+        flags = f"--stacks {len(self.stacks)} --buffers {len(self.buffers)}"
+        return f"; an `on` goal names no place, and `smash import-blocks … {flags}` makes an instance that fits"
 
     def bind_stations(self, instance: Instance) -> dict[str, Slot]:
         """Give every station of the carriers of an instance that `bind` has accepted its slot, in order."""

@@ -47,6 +47,7 @@ def reading_by_name(problem: ProblemText) -> tuple[Reading, tuple[str, ...]]:
         for atom in problem.facts
         if atom[0] not in meanings and usual(atom[0]) not in ACTION_FACTS | TYPE_FACTS and atom[0] not in types
     )
+    unknown |= dict.fromkeys(function for function in problem.functions if function != "total-cost")
     return Reading(hand, meanings, table, others), tuple(unknown)
 
 

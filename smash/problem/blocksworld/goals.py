@@ -132,7 +132,7 @@ class GoalReader:
         self._taken += 1
         if self._taken > MOST_FACTS:
             raise Unsupported(f"{self.where}: `:goal`: its quantifiers stand for more than {MOST_FACTS:,} facts")
-        meaning = self.reading.meanings.get(atom[0])
+        meaning = self.reading.meanings.get(atom[0]) or self.reading.derived.get(atom[0])
         if meaning is None:
             self._other(atom)
             return

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from smash.problem.blocksworld.world import MOVE, PUT, RELATIONS, TAKE, Kind, Meaning
 
@@ -97,6 +97,7 @@ class Reading:
         others: the objects that are neither a block nor the table.
         templates: what each action does.
         by_name: whether the usual spellings were taken, and no domain.
+        derived: what the predicates say that rules derive; goals may name them.
     """
 
     hand: bool
@@ -105,6 +106,7 @@ class Reading:
     others: frozenset[str] = frozenset()
     templates: tuple[Template, ...] = USUAL_TEMPLATES
     by_name: bool = True
+    derived: Mapping[str, Meaning] = field(default_factory=dict)
 
     def predicate_of(self, relation: str) -> str | None:
         """Return the predicate that says a relation; None where none does."""

@@ -204,7 +204,24 @@ class Recognizer:
             others=frozenset(name for name, _ in cast.others),
             templates=tuple(_templates(seen, cast.table)),
             by_name=False,
+            derived=self._derived(seen[0][0], meanings) if seen else {},
         )
+
+    def _derived(self, trial: Trial, meanings: Meanings) -> dict[str, Meaning]:
+        """Return what those derived predicates say that are about blocks alone and are some relation of theirs."""
+        found = {}
+        for name, (parameters, _) in self.domain.rules.items():
+            places = tuple(range(len(parameters)))
+            if any(self.sorts.find((name, place)) != trial.cast.sort for place in places):
+                continue
+            options: Options = (places, {})
+            fitting = (
+                m for m in self._choices(name, options, trial) if m is not None and trial.says(name, m, meanings)
+            )
+            meaning = next(fitting, None)
+            if meaning is not None:
+                found[name] = meaning
+        return found
 
 
 def _templates(seen: Sequence[tuple[Trial, Grounded, Step]], table: str | None) -> Iterator[Template]:

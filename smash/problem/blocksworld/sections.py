@@ -30,6 +30,7 @@ class ProblemText:
         objects: its objects, with their types.
         facts: what its start says, each fact once, in order.
         denied: what its start says not to be.
+        numeric: the values of functions at the start.
         goal: its goal.
     """
 
@@ -41,6 +42,11 @@ class ProblemText:
     denied: frozenset[Atom]
     numeric: tuple[Expression, ...]
     goal: Expression
+
+    @property
+    def functions(self) -> tuple[str, ...]:
+        """The functions that have a value at the start."""
+        return tuple(dict.fromkeys(_of_number(entry)[0] for entry in self.numeric))
 
     def require_declared(self, constants: Collection[str], hint: str) -> None:
         """Refuse names that are neither an object nor a constant.

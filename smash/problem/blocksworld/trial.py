@@ -165,6 +165,14 @@ class Trial:
                         return step
         return None
 
+    def says(self, predicate: str, meaning: Meaning, meanings: Meanings) -> bool:
+        """Return whether a derived predicate says in every state what `meaning` says."""
+        return all(
+            self._facts(meanings, at).holds(meaning.atom(predicate, blocks)) == meaning.true_of(state, blocks)
+            for at, (state, _) in enumerate(self.graph)
+            for blocks in itertools.permutations(self.blocks, len(meaning.places))
+        )
+
     def transitions(self, meanings: Meanings) -> list[tuple[Grounded, Step]] | Misfit:
         """Return what every action does, or what one does that is no step of a blocks world.
 
