@@ -150,7 +150,7 @@ class CastMaker:
     def tables(self, sort: Place) -> Iterator[str | None]:
         """Yield the objects that may be the table, the likeliest first; None for none."""
         members = self.sorts.members(sort, self.objects, self.facts)
-        named = {name for action in self.domain.actions for _, *names in action.atoms for name in names}
+        named = frozenset().union(*(action.names for action in self.domain.actions))
         constants = [name for name, _ in self.domain.constants if name in named and name in members]
         yield from constants
         yield None

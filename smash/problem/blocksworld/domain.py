@@ -34,6 +34,7 @@ class Action:
         effects: the literals that it makes true or false.
         atoms: every atom of its condition and its effects.
         reads: the predicates that its condition, or one of its effects, depends on.
+        names: every name that stands in an atom or an equality.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Action:
     effects: tuple[Effect, ...]
     atoms: tuple[Atom, ...]
     reads: frozenset[str]
+    names: frozenset[str]
 
     @property
     def writes(self) -> frozenset[str]:
@@ -182,4 +184,7 @@ class _Reader:
         condition = formulas.condition(given.get(":precondition", []))
         effects = tuple(formulas.effects(given.get(":effect", [])))
         self.costs |= formulas.costs or {"0"}
-        return Action(name, parameters, condition, effects, tuple(formulas.atoms), frozenset(formulas.read))
+        names = formulas.compared.union(*(atom[1:] for atom in formulas.atoms))
+        return Action(
+            name, parameters, condition, effects, tuple(formulas.atoms), frozenset(formulas.read), frozenset(names)
+        )

@@ -87,6 +87,8 @@ class Formulas:
         """The predicates that conditions ask for."""
         self.atoms: list[Atom] = []
         """Every atom, with the variables and constants that stand in it."""
+        self.compared: set[str] = set()
+        """The names that stand in an equality."""
         self.costs: set[str] = set()
         """What actions add to the total cost."""
 
@@ -125,6 +127,7 @@ class Formulas:
     def _fact_condition(self, expression: Expression) -> Condition:
         match expression:
             case ["=", str(one), str(other)]:
+                self.compared |= {one, other}
                 return lambda facts, binding: binding.get(one, one) == binding.get(other, other)
             case [str(word), *_] if word in COMPARISONS or word == "=":
                 self.unsupported(f"the numeric condition {show(expression)}")

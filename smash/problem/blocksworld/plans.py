@@ -122,6 +122,8 @@ class _Follower:
 
     def _target_refusal(self, step: Step, template: Template) -> str:
         target = step.target
+        if template.to_table not in (None, target is None):
+            return f"{template.action} puts nothing on {'the table' if target is None else 'a block'}"
         if target is None:
             taken = self._first_empty() is None
             return f"no location is empty, and {template.action} needs one" if taken else ""

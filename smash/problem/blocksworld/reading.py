@@ -55,8 +55,8 @@ class Template:
         kind: what it does.
         roles: of each argument `block`, `source`, `target`, or None (it says nothing).
         fixed: the objects that always stand at an argument: place and object.
-        from_table: whether the block comes from the table (None: from wherever it is).
-        to_table: whether it goes to the table, where no argument is the target.
+        from_table: whether the block comes from the table, or from a block; None: either.
+        to_table: whether it goes to the table, or to a block; None: either.
     """
 
     action: str
@@ -64,15 +64,15 @@ class Template:
     roles: tuple[str | None, ...]
     fixed: tuple[tuple[int, str], ...] = ()
     from_table: bool | None = None
-    to_table: bool = False
+    to_table: bool | None = None
 
 
 def _usual_templates() -> tuple[Template, ...]:
-    forms: dict[str, tuple[Kind, tuple[str, ...], bool | None, bool]] = {
-        "pick-up": (TAKE, ("block",), True, False),
+    forms: dict[str, tuple[Kind, tuple[str, ...], bool | None, bool | None]] = {
+        "pick-up": (TAKE, ("block",), True, None),
         "put-down": (PUT, ("block",), None, True),
         "stack": (PUT, ("block", "target"), None, False),
-        "unstack": (TAKE, ("block", "source"), False, False),
+        "unstack": (TAKE, ("block", "source"), False, None),
         "move-b-to-b": (MOVE, ("block", "source", "target"), False, False),
         "move-b-to-t": (MOVE, ("block", "source"), False, True),
         "move-t-to-b": (MOVE, ("block", "target"), True, False),

@@ -7,6 +7,7 @@ whole is taken if the actions, tried on every arrangement of a few blocks, do al
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
@@ -70,9 +71,10 @@ class Recognizer:
             Unsupported: where that is no blocks world.
         """
         refused: SmashError | None = None
-        for whole in (True, False):
+        single = [name for name, arity in self.domain.fluents.items() if arity == 1]
+        for whole, of_table in itertools.product((True, False), (None, *single)):
             for sort in self.sorts.of_blocks:
-                objects, facts = stand_in(self.domain, self.sorts, sort, blocks, whole=whole)
+                objects, facts = stand_in(self.domain, self.sorts, sort, blocks, whole=whole, of_table=of_table)
                 try:
                     return without_names(self.reading(objects, facts, self.domain.where), frozenset(objects))
                 except SmashError as error:
@@ -165,7 +167,12 @@ class Recognizer:
             if step is None:
                 yield from self._assign(trial, rest, tried, options, misfits)
             else:
-                misfits.append(Misfit(f"no action {step_words(step)}", len(tried)))
+                misfits.append(Misfit(f"no action {step_words(step)}", len(tried) + len(names) * self._usual(tried)))
+
+    def _usual(self, meanings: Meanings) -> bool:
+        """Whether every predicate says what its name usually says: what is missing then is worth telling first."""
+        said = [(name, meaning) for name, meaning in meanings.items() if meaning is not None]
+        return all(usual_relation(name) == (meaning.relation, meaning.positive) for name, meaning in said)
 
     def _choices(self, name: str, option: Options, trial: Trial) -> Iterator[Meaning | None]:
         """Yield what a predicate may say, what its name usually says first."""
@@ -237,6 +244,7 @@ def _templates(seen: Sequence[tuple[Trial, Grounded, Step]], table: str | None) 
         roles = tuple(
             next((role for role, things in told.items() if list(column) == things), None) for column in columns
         )
+        targets = {step.target is None for _, step in mine}
         sources = {step.source is None for _, step in mine}
         yield Template(
             action=name,
@@ -244,5 +252,5 @@ def _templates(seen: Sequence[tuple[Trial, Grounded, Step]], table: str | None) 
             roles=roles,
             fixed=tuple((at, column[0]) for at, column in enumerate(columns) if len(set(column)) == 1),
             from_table=sources.pop() if len(sources) == 1 else None,
-            to_table=any(step.target is None for _, step in mine) and "target" not in roles,
+            to_table=targets.pop() if len(targets) == 1 else None,
         )

@@ -17,7 +17,7 @@ ENOUGH = 4
 
 
 def stand_in(
-    domain: Domain, sorts: Sorts, sort: Place, blocks: Sequence[str], *, whole: bool
+    domain: Domain, sorts: Sorts, sort: Place, blocks: Sequence[str], *, whole: bool, of_table: str | None
 ) -> tuple[dict[str, Types], list[Atom]]:
     """Return objects with their types, and facts, for a domain of which no problem is known.
 
@@ -27,12 +27,14 @@ def stand_in(
         sort: the sort of the blocks.
         blocks: the names of all blocks; constants of the domain may be among them.
         whole: whether what never changes holds of all distinct objects, or of none.
+        of_table: the changing predicate that is said of constants that actions name (the table); None: none.
     """
     constants = dict(domain.constants)
     ours = [name for name in blocks if name not in constants][:ENOUGH]
     objects = {name: _type_for(domain, sorts, sort) for name in ours}
-    named = {name for action in domain.actions for _, *names in action.atoms for name in names}
-    members = {sort: [*ours, *(name for name in constants if name in named)]}
+    named = frozenset().union(*(action.names for action in domain.actions))
+    fixed = [name for name in constants if name in named]
+    members = {sort: [*ours, *(name for name in constants if name in named or name in blocks)]}
     reads = frozenset().union(*(action.reads for action in domain.actions), *domain.rule_reads.values())
     arity = {atom[0]: len(atom) - 1 for action in domain.actions for atom in action.atoms}
     for predicate in (*domain.fluents, *sorted(reads & set(arity))):
@@ -42,7 +44,7 @@ def stand_in(
                 name = f"(the {len(members)}.)"
                 objects[name] = _type_for(domain, sorts, other)
                 members[other] = [name]
-    facts: list[Atom] = []
+    facts: list[Atom] = [] if of_table is None else [(of_table, name) for name in fixed]
     for predicate in sorted(reads & set(arity)) if whole else []:
         if predicate not in domain.fluents and predicate not in domain.rules:
             columns = [members[sorts.find((predicate, number))] for number in range(arity[predicate])]

@@ -108,9 +108,7 @@ class Speaker:
         """Return the arguments that make an action do a step; None where none do."""
         if template.kind != step.kind or template.from_table not in (None, step.source is None):
             return None
-        if step.kind != "take" and step.target is None and not template.to_table and "target" not in template.roles:
-            return None
-        if step.target is not None and "target" not in template.roles:
+        if step.kind != "take" and template.to_table not in (None, step.target is None):
             return None
         fixed = dict(template.fixed)
         told = {"block": step.block, "source": step.source, "target": step.target}

@@ -141,34 +141,43 @@ class Trial:
             for block in self.blocks:
                 if RELATIONS["ontable"].holds(state, block) == meaning.positive:
                     yield meaning.atom(predicate, (block, table))
-        yield from (atom for atom in self.cast.of_table if atom[0] == predicate)
 
-    def _facts(self, meanings: Meanings, at: int) -> Facts:
+    def _facts(self, meanings: Meanings, at: int, of_table: frozenset[Atom]) -> Facts:
         unknown = frozenset(name for name in self.domain.fluents if meanings.get(name) is None)
-        return Facts(self.encoding(meanings, at), self._always, unknown, self.domain.rules, self._things)
+        known = frozenset(atom for atom in of_table if atom[0] not in unknown)
+        return Facts(self.encoding(meanings, at) | known, self._always, unknown, self.domain.rules, self._things)
+
+    def _parted(self, state: frozenset[Atom]) -> tuple[frozenset[Atom], frozenset[Atom]]:
+        """Return what a state says of blocks, and what it says of the table alone, which says nothing of blocks."""
+        of_table = frozenset(atom for atom in state if len(atom) == 2 and atom[1] == self.cast.table)
+        return state - of_table, of_table
 
     def missing(self, meanings: Meanings) -> Step | None:
         """Return a step of the blocks world that no action can be, whatever the predicates say that have no meaning."""
-        for at, (_, following) in enumerate(self.graph):
-            facts = self._facts(meanings, at)
-            reached: set[frozenset[Atom]] = set()
-            for one in self.grounded:
-                if one.action.condition(facts, one.binding) is False:
-                    continue
-                state = after(facts, one.action.effects, one.binding)
-                if state is None:
-                    break
-                reached.add(state)
-            else:
-                for step, later in following:
-                    if self.encoding(meanings, later) not in reached:
-                        return step
-        return None
+        return next(filter(None, (self._missing_at(meanings, at, self.cast.of_table) for at in self._numbers)), None)
+
+    @cached_property
+    def _numbers(self) -> range:
+        return range(len(self.graph))
+
+    def _missing_at(self, meanings: Meanings, at: int, of_table: frozenset[Atom]) -> Step | None:
+        facts = self._facts(meanings, at, of_table)
+        reached: set[frozenset[Atom]] = set()
+        for one in self.grounded:
+            if one.action.condition(facts, one.binding) is False:
+                continue
+            state = after(facts, one.action.effects, one.binding)
+            if state is None:
+                return None
+            reached.add(self._parted(state)[0])
+        following = self.graph[at][1]
+        return next((step for step, later in following if self.encoding(meanings, later) not in reached), None)
 
     def says(self, predicate: str, meaning: Meaning, meanings: Meanings) -> bool:
         """Return whether a derived predicate says in every state what `meaning` says."""
         return all(
-            self._facts(meanings, at).holds(meaning.atom(predicate, blocks)) == meaning.true_of(state, blocks)
+            self._facts(meanings, at, self.cast.of_table).holds(meaning.atom(predicate, blocks))
+            == meaning.true_of(state, blocks)
             for at, (state, _) in enumerate(self.graph)
             for blocks in itertools.permutations(self.blocks, len(meaning.places))
         )
@@ -179,23 +188,36 @@ class Trial:
         Args:
             meanings: of every changing predicate.
         """
-        found = []
-        codes = [self.encoding(meanings, at) for at in range(len(self.graph))]
+        codes = [self.encoding(meanings, at) for at in self._numbers]
         if len(set(codes)) < len(codes):
             return Misfit("its predicates do not tell all arrangements apart")
-        for at, (_, following) in enumerate(self.graph):
-            facts = self._facts(meanings, at)
-            by_code = {codes[later]: step for step, later in following}
-            for one in self.grounded:
-                if one.action.condition(facts, one.binding) is False:
-                    continue
-                state = after(facts, one.action.effects, one.binding)
-                if state is not None and state == facts.state:
-                    continue
-                if state not in by_code:
-                    return Misfit(f"the action {one.action.name!r} does what no step of a blocks world does")
-                found.append((one, by_code[state]))
+        found: list[tuple[Grounded, Step]] = []
+        waiting, seen = [self.cast.of_table], {self.cast.of_table}
+        while waiting:
+            of_table = waiting.pop()
+            for at in self._numbers:
+                if (missing := self._missing_at(meanings, at, of_table)) is not None:
+                    return Misfit(f"no action {step_words(missing)} as soon as the table is another")
+                for one, code, after_it in self._results(meanings, at, of_table):
+                    by_code = {codes[later]: step for step, later in self.graph[at][1]}
+                    if code not in by_code and code != codes[at]:
+                        return Misfit(f"the action {one.action.name!r} does what no step of a blocks world does")
+                    if code in by_code:
+                        found.append((one, by_code[code]))
+                    if after_it not in seen:
+                        seen.add(after_it)
+                        waiting.append(after_it)
         return found
+
+    def _results(
+        self, meanings: Meanings, at: int, of_table: frozenset[Atom]
+    ) -> Iterator[tuple[Grounded, frozenset[Atom], frozenset[Atom]]]:
+        """Yield what applies to a state, with what is then said of blocks and of the table."""
+        facts = self._facts(meanings, at, of_table)
+        for one in self.grounded:
+            if one.action.condition(facts, one.binding) is not False:
+                state = after(facts, one.action.effects, one.binding)
+                yield one, *self._parted(frozenset({("?",)}) if state is None else state)
 
 
 def step_words(step: Step) -> str:
