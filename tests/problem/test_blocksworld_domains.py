@@ -14,7 +14,7 @@ from smash.problem.blocksworld.sections import problem_from
 from smash.problem.blocksworld.sexpr import parse_expression
 from smash.problem.errors import Unsupported
 from tests.pddl_replay import World, replay
-from tests.pddl_worlds import FOUR, Dress, dresses
+from tests.pddl_worlds import FOUR, KINDS, Dress, dresses
 
 TOWERS = (("a", "b"), ("c",), ("d",))
 
@@ -139,16 +139,18 @@ def test_several_hands_are_named():
         read(dress.domain(), problem)
 
 
-def test_the_domain_alone_says_what_a_plan_means():
-    for dress in dresses():
-        if dress.kind == "no-ontable":
-            continue
-        goal = OnGoal({"a": "c"})
-        instance = make_instance({"s1": ["a", "b"], "s2": ["c"], "s3": ["d"], "s4": []}, goal)
-        reading = recognizer(dress.domain()).reading_of_blocks(["a", "b", "c", "d"])
-        found = read(dress.domain(), dress.problem(TOWERS, dress.goal(on=[("a", "c")])))
-        answer = plan(instance, planner="greedy", topple=False)
-        steps = exported(instance, answer.actions, found.reading, moves=not dress.hand).steps
-        assert imported(instance, parse_plan(plan_lines(steps, len(steps), unit=True), "p"), reading).actions, str(
-            dress
-        )
+@pytest.mark.parametrize(
+    "dress",
+    [
+        *(Dress(kind, "random") for kind in KINDS if kind != "no-ontable"),
+        Dress("four", "mystery", typed=True, extras=frozenset({"hand-object", "static", "constants"})),
+    ],
+    ids=str,
+)
+def test_the_domain_alone_says_what_a_plan_means(dress):
+    instance = make_instance({"s1": ["a", "b"], "s2": ["c"], "s3": ["d"], "s4": []}, OnGoal({"a": "c"}))
+    reading = recognizer(dress.domain()).reading_of_blocks(["a", "b", "c", "d"])
+    found = read(dress.domain(), dress.problem(TOWERS, dress.goal(on=[("a", "c")])))
+    answer = plan(instance, planner="greedy", topple=False)
+    steps = exported(instance, answer.actions, found.reading, moves=not dress.hand).steps
+    assert imported(instance, parse_plan(plan_lines(steps, len(steps), unit=True), "p"), reading).actions
