@@ -110,18 +110,22 @@ class MethodPlanner(ProblemPlanner):
         """
         deadline = deadline_of(budget, self.kept_back)
         log = SolveLog(problem, on_incumbent, gentle=self.gentle)
+        self._solve(log, settings, deadline)
+        return log.plan()
+
+    def _solve(self, log: SolveLog, settings: Settings, deadline: float) -> None:
+        problem = log.problem
         if problem.solved:
             log.offer((), "start")
             log.prove(0, "start")
-        elif problem.infeasible is not None:
+            return
+        if problem.infeasible is not None:
             log.refute("feasibility", problem.infeasible)
-        elif problem.instance.hand is not None:
-            plan_first_places(
-                problem, log, deadline, lambda rest, seconds, found: self.plan(rest, settings, seconds, found)
-            )
-        else:
-            if self.proves:
-                log.prove(0, "start")
+            return
+        if self.proves:
+            log.prove(0, "start")
+        if problem.instance.hand is None:
             asked = problem.as_posed
             walk(self.methods(asked, settings), asked, log, deadline)
-        return log.plan()
+        else:
+            plan_first_places(log, deadline, lambda rest, until: self._solve(rest, settings, until))
