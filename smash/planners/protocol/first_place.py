@@ -21,7 +21,7 @@ FIRST_SECONDS = 0.1
 """For the first look at each place; what is still open then gets `GROWTH` times as long, and so on."""
 GROWTH = 4.0
 ENDED_SHARE = 0.5
-"""A look that took no more than this share of its time ended by itself: it would find nothing more."""
+"""A look that took no more than this share of its time ended by itself: only far more time may help it."""
 ORDER_SHARE = 0.1
 """Share of the time in which the places are put in order; the others come last."""
 
@@ -33,7 +33,7 @@ PlanRest = Callable[[SolveLog, float], object]
 class _First:
     """A first place: what it costs, what is left to plan, and what the rest costs at least.
 
-    `guess` is what the rest seems to cost; `ended` where another look would find nothing more.
+    `guess` is what the rest seems to cost; `ended` where the last look left time over.
     """
 
     place: Place
@@ -72,21 +72,22 @@ def plan_first_places(log: SolveLog, deadline: float, plan_rest: PlanRest) -> No
         waiting = sorted((first for first in firsts if _open(first, log)), key=lambda first: first.promise)
         if not waiting:
             return
+        last = all(first.ended for first in waiting)  # all the time that is left, and that is it
         for number, first in enumerate(waiting):
             if looked and left(deadline) <= 0:
                 return
-            if not _open(first, log):
-                continue
-            rest = left(deadline)
-            share = rest if len(waiting) == 1 else min(seconds, rest / (len(waiting) - number))
-            _look(first, firsts, log, share, plan_rest)
-            looked = True
+            if _open(first, log):
+                most = left(deadline) / (len(waiting) - number)
+                _look(first, firsts, log, most if last or len(waiting) == 1 else min(seconds, most), plan_rest)
+                looked = True
+        if last:
+            return
         seconds *= GROWTH
 
 
 def _open(first: _First, log: SolveLog) -> bool:
-    """Whether another look at a first place may find a better plan."""
-    return not first.ended and (log.upper is None or first.least < log.upper)
+    """Whether a look at a first place may find a better plan."""
+    return first.least < (math.inf if log.upper is None else log.upper)
 
 
 def _firsts(problem: Problem, until: float) -> list[_First]:
@@ -107,7 +108,7 @@ def _judge(first: _First) -> None:
     """Guess what is left to do: two actions a block that has to be put, one a stack of which some fall."""
     rest = first.rest
     if rest.infeasible is not None:
-        first.bound, first.origin, first.ended = math.inf, "feasibility", True
+        first.bound, first.origin = math.inf, "feasibility"
         return
     demands = rest.demands
     disturbed = sum(bool(pile) for pile in demands.leaving.values())
@@ -124,7 +125,7 @@ def _look(first: _First, firsts: Sequence[_First], log: SolveLog, seconds: float
     if inner.refuted is not None:
         first.bound, first.origin = math.inf, inner.refuted
     _prove(firsts, log)
-    first.ended = inner.settled or perf_counter() - began < ENDED_SHARE * seconds
+    first.ended = perf_counter() - began < ENDED_SHARE * seconds
     log.details.setdefault("first_places", {})[first.place.target] = inner.details
 
 
