@@ -71,14 +71,16 @@ def test_every_word_is_that_of_exhaustive_search(name, count, exact):
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1200)
 @pytest.mark.parametrize("part", range(10))
-@pytest.mark.parametrize(("name", "count"), [("greedy", 300), ("precedence", 200), ("astar", 200), ("smash", 200)])
+@pytest.mark.parametrize(("name", "count"), [("greedy", 100), ("precedence", 100), ("astar", 100), ("smash", 100)])
 def test_every_word_is_that_of_exhaustive_search_in_thousands_of_cases(name, count, part):
     for seed in range(count * part + 10_000, count * (part + 1) + 10_000):
-        hold_to(name, related(seed, most_blocks=5, stacks=5, hand=0.3))
+        hold_to(name, related(seed, most_blocks=5, stacks=4, hand=0.3))
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1200)
 @pytest.mark.parametrize(("name", "count"), [("smash-layered", 300), ("smash-flow", 100)])
 def test_every_word_of_the_models_is_that_of_exhaustive_search_in_hundreds_of_cases(name, count):
     for seed in range(10_000, 10_000 + count):
