@@ -16,6 +16,8 @@ from smash.problem import (
     make_instance,
 )
 
+EVERY_KIND = ("stacks", "positions", "on", "resting")
+"""The kinds of goals; `resting` ones are `on` goals that say `ontable` and `clear` too."""
 ODD_NAMES = ["b 1", "", "größe", "quote'\"", "s1", "-", "(x)", "42", "B1", "b1"]
 
 
@@ -45,7 +47,12 @@ def goals(draw, blocks, stacks, kinds=("stacks", "positions", "on")):
         )
     on = {upper: under for pile in piles.values() for under, upper in itertools.pairwise(pile)}
     bases = [pile[0] for pile in piles.values() if pile]
-    return OnGoal(on, tuple(base for base in bases if draw(st.booleans())))
+    bottom = tuple(base for base in bases if draw(st.booleans()))
+    if kind == "on":
+        return OnGoal(on, bottom)
+    loaded = frozenset(on.values())
+    ontable = tuple(block for block in blocks if block not in on and draw(st.booleans()))
+    return OnGoal(on, bottom, ontable, tuple(block for block in blocks if block not in loaded and draw(st.booleans())))
 
 
 @st.composite
@@ -59,14 +66,17 @@ def instances(
     buffer_start=True,
     table_start=True,
     odd_names=False,
+    hand=False,
 ) -> Instance:
-    """Draw a small instance."""
+    """Draw a small instance; with `hand` the hand may be full at the start."""
     count = draw(st.integers(min_blocks, max_blocks))
     blocks = ODD_NAMES[:count] if odd_names else [f"b{number}" for number in range(1, count + 1)]
     stacks = [f"s{number}" for number in range(1, draw(st.integers(1, max_stacks)) + 1)]
     buffers = [f"u{number}" for number in range(1, draw(st.integers(0, max_buffers)) + 1)]
     places = [*stacks, *buffers] if buffer_start else stacks
-    start, table = draw(arrangements(blocks, places, leave_out=table_start))
+    held = draw(st.sampled_from([None, *blocks])) if hand else None
+    others = [block for block in blocks if block != held]
+    start, table = draw(arrangements(others, places, leave_out=table_start))
     return make_instance(
         name="drawn",
         blocks=blocks,
@@ -75,6 +85,7 @@ def instances(
         start=start,
         table=table,
         goal=draw(goals(blocks, stacks, kinds)),
+        hand=held,
     )
 
 
@@ -106,6 +117,7 @@ def family_instances(draw, max_capacity=3, max_carriers=2, max_blocks=3, max_buf
         start=start,
         table=plain.table,
         goal=plain.goal,
+        hand=plain.hand,
         carriers=carriers,
         capacities={} if lift is None else {"lift": lift},
         costs=draw(costs([*plain.locations, *used])),

@@ -7,13 +7,14 @@ put together by `smash_baselines.parts`.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from smash.problem.entry_points import entry_points_of
 from smash.problem.errors import SmashError, Unsupported
 from smash.problem.model import Instance, PlanOptions
 from smash.problem.problem import Problem
 from smash_baselines.domains import DOMAINS
+from smash_baselines.goal_words import judged_text, told, words_of
 from smash_baselines.parts.domain import domain_name, domain_text
 from smash_baselines.parts.part import Part
 from smash_baselines.parts.registry import parts_of
@@ -40,6 +41,7 @@ class Encoding:
         capped: whether it counts the blocks of a topple, from `(cap ?k)` down.
         with_cap: the encoding that takes its place where `max_topple` binds; None: it cannot say that.
         parts: of a domain of `smash_baselines.parts`, what it is put together from; they say facts and steps.
+        judged: whether it can say the words of a goal that hold in several ways (`smash_baselines.goal_words`).
     """
 
     name: str
@@ -51,6 +53,12 @@ class Encoding:
     capped: bool = False
     with_cap: Encoding | None = None
     parts: tuple[Part, ...] = ()
+    judged: bool = False
+
+    def with_words(self) -> Encoding:
+        """Return this encoding with the words of goals that hold in several ways."""
+        text = judged_text(self.text, self.domain, regions=self.chain or bool(self.parts))
+        return replace(self, name=f"{self.name}-words", domain=f"{self.domain}-words", text=text, judged=True)
 
     @property
     def conditional_effects(self) -> bool:
@@ -84,7 +92,8 @@ ENCODINGS = {
     "chain": CHAIN,
     "chain-capped": CHAIN_CAPPED,
 }
-BY_DOMAIN = {encoding.domain: encoding for encoding in ENCODINGS.values()}
+BY_DOMAIN = {encoding.domain: encoding for plain in ENCODINGS.values() for encoding in (plain, plain.with_words())}
+"""Every domain that is read back, by its PDDL name."""
 TOPPLE_ENCODINGS = ("conditional", "chain")
 """The two ways of this package to tell a topple: one action with conditional effects, or a chain of STRIPS actions."""
 COMPOSED = "chain"
@@ -153,7 +162,8 @@ def unsupported_reason(problem: Problem, wanted: str) -> str | None:
 def encoding_for(problem: Problem, wanted: str) -> Encoding:
     """Return the encoding of a problem, topples told in the way `wanted`.
 
-    Without topple all ways are the same pick-and-place domain.
+    Without topple all ways are the same pick-and-place domain. A goal that `ontable` or `clear`
+    leaves open adds its words.
 
     Raises:
         UnknownEncoding: where none is called so.
@@ -165,7 +175,9 @@ def encoding_for(problem: Problem, wanted: str) -> Encoding:
         raise Unsupported(reason)
     encoding = get_encoding(wanted)
     if not problem.plain:
-        return family_encoding(instance, options)
-    if not options.topple:
-        return PICK_AND_PLACE
-    return encoding if cap_of(instance, options) is None else encoding.with_cap or encoding
+        encoding = family_encoding(instance, options)
+    elif not options.topple:
+        encoding = PICK_AND_PLACE
+    elif cap_of(instance, options) is not None:
+        encoding = encoding.with_cap or encoding
+    return encoding.with_words() if words_of(told(problem).goal) else encoding

@@ -13,12 +13,14 @@ from typing import Any, ClassVar, Self
 
 from smash.planners.protocol import OnIncumbent, ProblemPlanner, Settings, SolveLog
 from smash.problem.errors import IllegalAction, PlannerCrashed, PlannerOutOfMemory, Unsupported
+from smash.problem.feasibility import why_contradictory
 from smash.problem.plan import Plan
 from smash.problem.problem import Problem
 from smash_baselines.encodings import COMPOSED, UnknownEncoding, encoding_names, get_encoding, unsupported_reason
 from smash_baselines.engines.outcomes import Outcome
 from smash_baselines.engines.process import MEMORY_LIMIT
 from smash_baselines.facts import named_blocks, trim_buffers
+from smash_baselines.goal_words import told
 from smash_baselines.names import Step
 from smash_baselines.parts.registry import TOLD
 from smash_baselines.steps import actions_of
@@ -65,6 +67,8 @@ class EnginePlanner(ProblemPlanner):
     """Whether it takes the chain for problems that its encoding cannot say because they go beyond topple at cost 1."""
     aggregating: ClassVar[frozenset[str]] = TOLD
     weighs: ClassVar[bool] = True
+    open_goals: ClassVar[bool] = True
+    holds: ClassVar[bool] = True
 
     def __init__(self, memory: int = MEMORY_LIMIT) -> None:
         """Make the planner.
@@ -110,6 +114,8 @@ class EnginePlanner(ProblemPlanner):
     ) -> Plan:
         """Plan for at most `budget` seconds, compilation and the engine's translation included.
 
+        A goal that contradicts itself is answered at once; every other proof is the engine's own.
+
         Args:
             problem: what to plan.
             settings: nothing of them means anything to an engine.
@@ -126,7 +132,11 @@ class EnginePlanner(ProblemPlanner):
             log.offer((), "start")
             log.prove(0, "start")
             return log.plan()
-        instance = problem.instance
+        contradiction = why_contradictory(problem.instance.goal)
+        if contradiction is not None:
+            log.refute("feasibility", contradiction)
+            return log.plan()
+        instance = told(problem)
         task = compile_instance(
             trim_buffers(instance), problem.options, self.encoding_of(problem), named_blocks(instance)
         )

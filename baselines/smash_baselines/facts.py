@@ -8,6 +8,7 @@ from itertools import pairwise
 
 from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal, no_goal
 from smash_baselines.encodings import Encoding, cap_of
+from smash_baselines.goal_words import ended, word_facts, word_names
 from smash_baselines.names import Fact, Names, count_names
 from smash_baselines.parts.layout import Layout
 from smash_baselines.parts.part import Telling
@@ -62,7 +63,12 @@ def named_blocks(instance: Instance) -> frozenset[str]:
 
     Leave such a pick and what follows for this block out: every pile that it stood in is one lower, everything else
     is as before, and at the end nothing rests on it that the goal wants at a height or on something else. This holds
-    for actions that blocks only hinder (`Part.blocks_only_hinder`).
+    for actions that blocks only hinder (`Part.blocks_only_hinder`). What `ontable` and `clear` ask of the block itself
+    holds in the table region too.
+
+    Args:
+        instance: with the goal that PDDL is told (`smash_baselines.goal_words.told`): an `ontable` block that carries
+            another is in `bottom`.
     """
     match instance.goal:
         case StacksGoal():
@@ -94,7 +100,7 @@ def facts_of(
         return _family_facts(Telling(instance, options, Layout(instance, names), wanted), encoding)
     cap = cap_of(instance, options) if encoding.capped else None
     counts = count_names(max(len(instance.buffers), 0 if cap is None else cap - 1))
-    start: list[Fact] = [("hand-empty",)]
+    start: list[Fact] = [_hand(instance, names)]
     if encoding.chain:
         start.append(("idle",))
     start += _piles(instance, encoding, names)
@@ -104,23 +110,31 @@ def facts_of(
     if cap is not None:
         start.append(("cap", counts[cap - 1]))
     start += [("next", counts[k], counts[k + 1]) for k in range(len(counts) - 1)]
+    start += word_facts(instance.goal, names)
     objects = {
         "block": tuple(names.blocks.values()),
         "location": tuple(names.locations.values()),
         "count": tuple(counts),
+        "word": word_names(instance.goal),
     }
-    ended: tuple[Fact, ...] = (("hand-empty",), ("idle",)) if ("idle",) in start else (("hand-empty",),)
-    return Facts(objects, tuple(start), (*_goal(instance, names), *ended))
+    idle: tuple[Fact, ...] = (("idle",),) if encoding.chain else ()
+    return Facts(objects, tuple(start), (*_goal(instance, names), *ended(instance.goal), *idle))
+
+
+def _hand(instance: Instance, names: Names) -> Fact:
+    return ("hand-empty",) if instance.hand is None else ("holding", names.blocks[instance.hand])
 
 
 def _family_facts(telling: Telling, encoding: Encoding) -> Facts:
     objects: dict[str, tuple[str, ...]] = {}
     for part in encoding.parts:
         objects |= part.objects(telling)
+    goal, names = telling.instance.goal, telling.layout.names
+    start = [fact for part in encoding.parts for fact in part.start(telling)]
     return Facts(
-        objects,
-        tuple(fact for part in encoding.parts for fact in part.start(telling)),
-        (*_goal(telling.instance, telling.layout.names), ("hand-empty",), ("idle",)),
+        objects | {"word": word_names(goal)},
+        (*start, *word_facts(goal, names)),
+        (*_goal(telling.instance, names), *ended(goal), ("idle",)),
         tuple(cost for part in encoding.parts for cost in part.costs(telling)),
     )
 

@@ -13,9 +13,14 @@ from smash.problem.making import make_instance
 from smash.problem.model import Goal, Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal
 from smash_baselines.encodings import BY_DOMAIN, Encoding
 from smash_baselines.facts import facts_of
+from smash_baselines.goal_words import CLEAR, RESTS
 from smash_baselines.names import Fact, Names, numbered
 from smash_baselines.task import HEADER, PddlTask
 
+_READ_APART = frozenset({"next", "free-buffers", "cap", "opens", "before", "met", RESTS, CLEAR})
+"""Facts whose objects may have other names, or be more, than those of the compiler."""
+_ENDED = frozenset({("hand-empty",), ("idle",)})
+"""What a goal may leave out where the hand starts empty: what else it says is brought about by actions that end so."""
 _TOKEN = re.compile(r"[()]|[^\s()]+")
 
 
@@ -160,12 +165,15 @@ class _Interpreter:
             self.refuse(f"a fact names what is no object of its type: {error}")
         names = Names(_inverse(self.block_of), _inverse(self.location_of))
         counts = tuple(sorted(self.raw.objects.get("count", []), key=self._index))
-        return ReadProblem(instance, options, self.raw.encoding, names, counts)
+        read = ReadProblem(instance, options, self.raw.encoding, names, counts)
+        _check(self.raw, read)
+        return read
 
     def _instance(self) -> Instance:
         raw = self.raw
-        if ("hand-empty",) not in raw.start or (raw.encoding.chain and ("idle",) not in raw.start):
-            self.refuse("the hand holds a block, or a topple is under way, at the start")
+        hand = self._hand()
+        if raw.encoding.chain and ("idle",) not in raw.start:
+            self.refuse("a topple is under way at the start")
         start = {self.location_of[f[2]]: self._pile(f[1]) for f in raw.start if f[0] == "base"}
         on_buffers = [fact[1] for fact in raw.start if fact[0] == "on-buffer"]
         buffers = self._buffers(len(on_buffers) + self._free())
@@ -178,9 +186,16 @@ class _Interpreter:
             buffers=buffers,
             start=start,
             table=[self.block_of[fact[1]] for fact in raw.start if fact[0] == "on-table"],
+            hand=hand,
             goal=self._goal(),
             where=raw.where,
         )
+
+    def _hand(self) -> str | None:
+        held = [fact[1] for fact in self.raw.start if fact[0] == "holding"]
+        if (("hand-empty",) in self.raw.start) == bool(held) or len(held) > 1:
+            self.refuse("at the start the hand is empty, (hand-empty), or holds one block, (holding …)")
+        return self.block_of[held[0]] if held else None
 
     def _pile(self, lowest: str) -> list[str]:
         pile = [lowest]
@@ -226,9 +241,10 @@ class _Interpreter:
 
     def _goal(self) -> Goal:
         """Read the goal: `on` where no block has a location, `stacks` where all blocks have one, else `positions`."""
-        facts = [fact for fact in self.raw.goal if fact[0] not in ("hand-empty", "idle")]
+        done = {("hand-empty",), ("idle",)}
+        facts = [fact for fact in self.raw.goal if fact not in done and fact[0] != "met"]
         if any(fact[0] not in ("on", "base", "bottom") for fact in facts):
-            self.refuse("the goal may say (on …), (base …), (bottom …), (hand-empty) and (idle) only")
+            self.refuse("the goal may say (on …), (base …), (bottom …), (met …), (hand-empty) and (idle) only")
         upon = {fact[2]: fact[1] for fact in facts if fact[0] == "on"}
         piles: dict[str, list[str]] = {}
         for base in (fact for fact in facts if fact[0] == "base"):
@@ -237,12 +253,47 @@ class _Interpreter:
                 pile.append(upon.pop(pile[-1]))
             piles[self.location_of[base[2]]] = [self.block_of[short] for short in pile]
         bottom = tuple(self.block_of[fact[1]] for fact in facts if fact[0] == "bottom")
-        if piles and (upon or bottom):
+        words = self._words()
+        if piles and (upon or bottom or any(words.values())):
             self.refuse("the goal mixes blocks at locations with relations at any location: no instance says this")
         placed = sum(map(len, piles.values()))
         kind = self.raw.names.get("goal") or ("on" if not piles else "")
         if kind == "on" and not piles:
-            return OnGoal({self.block_of[upper]: self.block_of[under] for under, upper in upon.items()}, bottom)
+            on = {self.block_of[upper]: self.block_of[under] for under, upper in upon.items()}
+            return OnGoal(on, bottom, words[RESTS], words[CLEAR])
         if placed == len(self.block_of) and kind != "positions":
             return StacksGoal({location: tuple(pile) for location, pile in piles.items()})
         return PositionsGoal({b: (at, h) for at, pile in piles.items() for h, b in enumerate(pile, start=1)})
+
+    def _words(self) -> dict[str, tuple[str, ...]]:
+        """Read the words of the goal in the order in which they are judged: what is said of which blocks."""
+        said = {fact[1]: (fact[0], self.block_of[fact[2]]) for fact in self.raw.start if fact[0] in (RESTS, CLEAR)}
+        later = {fact[1]: fact[2] for fact in self.raw.start if fact[0] == "before"}
+        word = next((fact[1] for fact in self.raw.start if fact[0] == "opens"), None)
+        words: list[tuple[str, str]] = []
+        met = {fact[1] for fact in self.raw.goal if fact[0] == "met"}
+        while word in later and len(words) <= len(said):
+            word = later[word]
+            if word not in said or word not in met:
+                self.refuse(f"the goal's words: {word} is none that is said and to be (met …)")
+            words.append(said[word])
+        if len(words) != len(said) or len(met - said.keys()) > 1:
+            self.refuse("the goal's words do not follow each other by (before …) from the one that (opens …)")
+        return {says: tuple(block for kind, block in words if kind == says) for says in (RESTS, CLEAR)}
+
+
+def _check(raw: RawProblem, read: ReadProblem) -> None:
+    """Compare what the instance comes to in PDDL with what the problem says: nothing may be missing or too much.
+
+    Raises:
+        MalformedFile: naming a fact.
+    """
+    facts = read.task.facts
+    for part, told, said in (("start", facts.start, raw.start), ("goal", facts.goal, raw.goal)):
+        known, meant = (frozenset(fact for fact in some if fact[0] not in _READ_APART) for some in (told, said))
+        free = _ENDED if read.instance.hand is None else frozenset()
+        extra, lost = sorted(meant - known), sorted(known - meant - free)
+        if extra:
+            raise MalformedFile(raw.where, f"the {part} says ({' '.join(extra[0])}), which does not fit the rest of it")
+        if lost:
+            raise MalformedFile(raw.where, f"the {part} does not say ({' '.join(lost[0])}), which the rest of it means")

@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from smash.problem.errors import Unsupported
-from smash_baselines.encodings import ENCODINGS, Encoding
+from smash_baselines.encodings import BY_DOMAIN, ENCODINGS, Encoding
 from smash_baselines.names import Fact
 from smash_baselines.read_problem import RawProblem, ReadProblem, interpret
 
@@ -38,7 +38,7 @@ def read_up_problem(problem: Problem) -> ReadProblem:
 
 def _encoding_of(problem: Problem) -> Encoding:
     said = _actions(problem)
-    alike = [encoding for encoding in ENCODINGS.values() if said.keys() == _reference(encoding).keys()]
+    alike = [encoding for encoding in BY_DOMAIN.values() if said.keys() == _reference(encoding).keys()]
     for encoding in alike:
         if said == _reference(encoding):
             return encoding

@@ -9,6 +9,8 @@ from smash.problem.actions.topple import Topple
 from smash.problem.errors import IllegalAction
 from smash.problem.model import TABLE, Action, Pick, Place, State
 from smash.problem.rules import Law
+from smash_baselines.goal_words import JUDGED
+from smash_baselines.judging import judging_steps
 from smash_baselines.names import Step
 from smash_baselines.parts.layout import Layout
 from smash_baselines.parts.part import Part, Telling, step_names
@@ -40,6 +42,8 @@ class _Decoder(ABC):
 
     def run(self, steps: Iterable[Step]) -> Iterator[Action]:
         for step in steps:
+            if self._task.encoding.judged and step[0] in JUDGED:
+                continue
             try:
                 action = self._action(step)
             except (KeyError, IndexError, ValueError, StopIteration) as error:
@@ -123,6 +127,8 @@ class _ToppleDecoder(_Decoder):
 def steps_of(actions: Sequence[Action], task: PddlTask) -> list[Step]:
     """Return the PDDL plan of a legal plan: the encodings say whatever the law allows.
 
+    Where the goal holds at the end, the words that it leaves open are judged.
+
     Raises:
         IllegalAction: where the law refuses an action.
     """
@@ -135,6 +141,8 @@ def steps_of(actions: Sequence[Action], task: PddlTask) -> list[Step]:
             raise IllegalAction(f"{action}: {reason}")
         steps += _family_steps(task, state, action) if task.encoding.parts else _Encoder(task, state).steps(action)
         law.apply(state, action)
+    if task.encoding.judged and law.goal_shortfall(state) is None:
+        steps += judging_steps(state, task)
     return steps
 
 

@@ -12,6 +12,7 @@ from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, St
 from smash.problem.problem import Problem
 from smash_baselines.encodings import Encoding, encoding_for
 from smash_baselines.facts import Facts, facts_of
+from smash_baselines.goal_words import told
 from smash_baselines.names import Fact, Names
 from smash_baselines.parts.layout import Layout
 
@@ -22,7 +23,10 @@ GOAL_KINDS = {StacksGoal: "stacks", PositionsGoal: "positions", OnGoal: "on"}
 
 @dataclass(frozen=True, slots=True)
 class PddlTask:
-    """An instance compiled to PDDL, with what is needed to read plans back."""
+    """An instance compiled to PDDL, with what is needed to read plans back.
+
+    Its goal is the one that PDDL is told (`smash_baselines.goal_words.told`).
+    """
 
     instance: Instance
     options: PlanOptions
@@ -76,8 +80,9 @@ def compile_instance(
         UnknownEncoding: where no encoding is called so.
         Unsupported: where that encoding cannot say the problem.
     """
-    encoding = encoding_for(Problem(instance, options), wanted)
-    names = Names.of(instance)
+    problem = Problem(instance, options)
+    encoding = encoding_for(problem, wanted)
+    instance, names = told(problem), Names.of(instance)
     return PddlTask(instance, options, encoding, names, facts_of(instance, options, encoding, names, picked))
 
 

@@ -91,16 +91,18 @@ class SmashPlanner(MethodPlanner):
             Method("light search", plain, part.light_search, most=LIGHT_SECONDS),
             *(small if blocks <= SMALL_BLOCKS else large),
             Method("the law's states", not_plain, search_law_states, SEARCH_SHARE),
-            Method("layered", lambda problem: plain(problem) or few_blocks(problem), part.layered, LAYERED_SHARE),
-            Method("layered to the end", lambda problem: not_plain(problem) or few_blocks(problem), part.layered),
+            Method("layered", lambda problem: plain(problem) or modelled(problem), part.layered, LAYERED_SHARE),
+            Method("layered to the end", lambda problem: not_plain(problem) or modelled(problem), part.layered),
             Method("beam", plain, part.beams, lambda: 1.0 if part.search_has_ended else BEAM_SHARE),
             Method("search to the end", plain, part.search),
             Method("beam to the end", plain, part.beams),
         )
 
 
-def few_blocks(problem: Problem) -> str | None:
+def modelled(problem: Problem) -> str | None:
     """Take problems whose layered model can prove something."""
+    if problem.open_rest is not None:
+        return problem.open_rest
     return None if len(problem.instance.blocks) <= FEW_BLOCKS else f"more than {FEW_BLOCKS} blocks"
 
 
@@ -140,7 +142,7 @@ class _Parts:
             steps = search.run(until, may_compile)
             if steps is not None:
                 log.offer(numbered.actions(steps), "exact")
-            if log.proven or steps is None:
+            if log.settled or steps is None:
                 break
         log.details |= {"expanded": search.expanded, "search": search.ended}
 
@@ -152,7 +154,7 @@ class _Parts:
         beam.lower_upper(_cost(log))
         while (steps := beam.run(until)) is not None:
             log.offer(problem.numbered.actions(steps), "beam")
-            if log.proven:
+            if log.settled:
                 break
         if beam.ended == "proven":
             log.prove(min(beam.upper, _cost(log)), "beam")
@@ -180,6 +182,6 @@ class _Parts:
 
 
 def _cost(log: SolveLog) -> int:
-    """Return the cost of the best plan: a plain problem that is feasible has a greedy one."""
-    assert log.cost is not None
-    return log.cost
+    """Return the cost that a plan has to be below: a plain problem that is feasible has a greedy one."""
+    assert log.upper is not None
+    return log.upper

@@ -6,6 +6,9 @@ once, straight to its place, its removal would be its placement, and each would 
 least one of them is toppled at its first removal or put aside: the cycle is *hit*. What hits all cycles for
 the least cost is bounded from below by weights on the cycles (linear programming duality), or by a tree of
 cases with weights at its leaves. The checker knows the instance and the law's actions, and nothing of the planner.
+
+Where the hand holds a block at the start, every plan begins with a place: there is a proof for one location of each
+class of equal ones, and the least of their bounds, and 1 for the place, is the bound.
 """
 
 from __future__ import annotations
@@ -13,7 +16,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal, cast
 
@@ -21,10 +24,15 @@ import msgspec
 
 from smash.problem.errors import MalformedFile
 from smash.problem.files.documents import convert, parse_json, read_bytes
+from smash.problem.hand import after_place, distinct_locations
 from smash.problem.model import Instance, OnGoal, PlanOptions, StacksGoal
+from smash.problem.problem import Problem
+from smash.problem.views.posed import posed
 
 ONE = 1_000_000
 """Weights are whole millionths of an action."""
+PLACE_COST = 1
+"""Of the first action of a plan whose hand is full at the start."""
 
 
 class Leaf(msgspec.Struct, forbid_unknown_fields=True, tag_field="kind", tag="weights"):
@@ -41,8 +49,20 @@ class Cases(msgspec.Struct, forbid_unknown_fields=True, tag_field="kind", tag="c
     untaken: Leaf | Cases
 
 
+class FirstPlace(msgspec.Struct, forbid_unknown_fields=True):
+    """The proof for a start with a full hand where the block is put on the location `place` first."""
+
+    place: str
+    bound: int
+    cycles: list[list[str]]
+    proof: Leaf | Cases
+
+
 class Certificate(msgspec.Struct, forbid_unknown_fields=True):
-    """A `smash-certificate/1` document; `note` says what it does not prove."""
+    """A `smash-certificate/1` document; `note` says what it does not prove.
+
+    `first_places` stand in place of `cycles` and `proof` where the hand holds a block at the start.
+    """
 
     format: Literal["smash-certificate/1"]
     instance: str
@@ -52,6 +72,7 @@ class Certificate(msgspec.Struct, forbid_unknown_fields=True):
     cycles: list[list[str]]
     proof: Leaf | Cases
     note: str = ""
+    first_places: list[FirstPlace] = msgspec.field(default_factory=list)
 
 
 def read_certificate(path: str | os.PathLike[str]) -> Certificate:
@@ -66,7 +87,10 @@ def read_certificate(path: str | os.PathLike[str]) -> Certificate:
 
 def certificate_text(certificate: Certificate) -> str:
     """Return the text of a `smash-certificate/1` file."""
-    return json.dumps(msgspec.to_builtins(certificate)) + "\n"
+    document = msgspec.to_builtins(certificate)
+    if not certificate.first_places:
+        del document["first_places"]
+    return json.dumps(document) + "\n"
 
 
 class RefusedCertificate(MalformedFile):
@@ -97,13 +121,44 @@ def proven_bound(instance: Instance, options: PlanOptions, certificate: Certific
         raise RefusedCertificate(f"it is for instance {certificate.instance!r}, not {instance.name!r}")
     if (certificate.topple, certificate.max_topple) != (options.topple, options.max_topple):
         raise RefusedCertificate("its topple options are not those of the plan")
-    checker = _Checker(instance, options)
-    for number, cycle in enumerate(certificate.cycles):
-        checker.add_cycle(number, cycle)
-    bound = checker.base + checker.least(certificate.proof, frozenset(), frozenset())
+    if not Problem(instance, options).plain:
+        raise RefusedCertificate("a proof counts picks, places and topples alone, each at cost 1")
+    if instance.hand is None:
+        if certificate.first_places:
+            raise RefusedCertificate("it has first places, and the hand is empty at the start")
+        bound = _proven(instance, options, certificate.cycles, certificate.proof)
+    else:
+        bound = _proven_first_places(instance, options, certificate)
     if bound != certificate.bound:
         raise RefusedCertificate(f"it states the bound {certificate.bound}, its proof gives {bound}")
     return bound
+
+
+def first_problems(instance: Instance, options: PlanOptions) -> dict[str, Instance]:
+    """Return, by the first place, what is left to do where the hand holds a block: only what has a plan."""
+    rests = {location: after_place(instance, location) for location in distinct_locations(instance)}
+    return {at: rest for at, rest in rests.items() if Problem(rest, options).infeasible is None}
+
+
+def _proven_first_places(instance: Instance, options: PlanOptions, certificate: Certificate) -> int:
+    rests = first_problems(instance, options)
+    places = [first.place for first in certificate.first_places]
+    if sorted(places) != sorted(rests) or not places:
+        raise RefusedCertificate(f"it is about the first places {sorted(places)}, not {sorted(rests)}")
+    if certificate.cycles or certificate.proof != Leaf([]):
+        raise RefusedCertificate("it has a proof beside those of its first places")
+    for first in certificate.first_places:
+        bound = _proven(rests[first.place], options, first.cycles, first.proof)
+        if bound != first.bound:
+            raise RefusedCertificate(f"first place {first.place!r}: the bound is {bound}, not {first.bound}")
+    return PLACE_COST + min(first.bound for first in certificate.first_places)
+
+
+def _proven(instance: Instance, options: PlanOptions, cycles: Sequence[list[str]], proof: Leaf | Cases) -> int:
+    checker = _Checker(posed(instance, falls=options.topple), options)
+    for number, cycle in enumerate(cycles):
+        checker.add_cycle(number, cycle)
+    return checker.base + checker.least(proof, frozenset(), frozenset())
 
 
 class _Checker:
@@ -209,13 +264,14 @@ def _wrong_positions(instance: Instance, piles: dict[str, tuple[str, ...]]) -> s
 
 
 def _wrong_relations(instance: Instance, goal: OnGoal) -> set[str]:
-    """Return the blocks that stand on another than wanted, or where another is wanted."""
+    """Return the blocks that stand on another than wanted, or where another or none is wanted."""
     carried = {under: upper for upper, under in goal.on.items()}
+    grounded, clear = {*goal.bottom, *goal.ontable}, frozenset(goal.clear)
     wrong = set()
     for pile in instance.start.values():
         for under, block in _pairs(pile):
-            misplaced = goal.on.get(block, under) != under or (block in goal.bottom and under is not None)
-            if misplaced or (under is not None and carried.get(under, block) != block):
+            misplaced = goal.on.get(block, under) != under or (block in grounded and under is not None)
+            if misplaced or (under is not None and (under in clear or carried.get(under, block) != block)):
                 wrong.add(block)
     return wrong
 

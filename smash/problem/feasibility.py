@@ -11,8 +11,8 @@ has a plan where one of its first places leads to one.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
 
+from smash.problem.ends import splits, tower_ends
 from smash.problem.hand import after_place, distinct_locations
 from smash.problem.model import Goal, Instance, OnGoal, PositionsGoal, StacksGoal
 from smash.problem.rules import Law
@@ -109,7 +109,8 @@ def _reachable(instance: Instance) -> bool:
     """Whether one or two locations reach a posed goal by pick and place alone."""
     goal = instance.goal
     if isinstance(goal, OnGoal):
-        return any(_towers_fit(goal, piles) for piles in _splits(instance))
+        starts = [instance.start[location] for location in instance.locations]
+        return any(tower_ends(goal, piles) is not None for piles in splits(starts))
     return _piles_fit(instance, _goal_piles(instance, goal))
 
 
@@ -130,61 +131,3 @@ def _piles_fit(instance: Instance, wanted: list[Pile]) -> bool:
     left = tuple(block for block in wanted[0] if block not in loose)
     right = tuple(block for block in reversed(wanted[1]) if block not in loose)
     return line[: len(left)] == left and line[len(line) - len(right) :] == right
-
-
-def _splits(instance: Instance) -> Iterator[list[Pile]]:
-    """Yield the arrangements of the standing blocks that one or two locations can take."""
-    starts = [instance.start[location] for location in instance.locations]
-    if len(starts) == 1:
-        yield starts
-        return
-    line = starts[0] + starts[1][::-1]
-    for gap in range(len(line) + 1):
-        yield [line[:gap], line[gap:][::-1]]
-
-
-def _towers_fit(goal: OnGoal, piles: Sequence[Pile]) -> bool:
-    """Whether inserting blocks of the table region into `piles` can make every tower of an `on` goal.
-
-    With two piles a block can be inserted at any height (the gap moves there), with one only on top.
-    """
-    place = {block: (number, height) for number, pile in enumerate(piles) for height, block in enumerate(pile)}
-    in_towers = {block for tower in goal.towers() for block in tower}
-    open_bottom = {number for number, pile in enumerate(piles) if len(piles) > 1 or not pile}
-    open_top = set(range(len(piles)))
-    sealed: set[int] = set()
-    waiting: list[tuple[bool, bool]] = []
-    """Of each tower that is all to be put: whether it begins at a bottom, and whether nothing comes on it."""
-    for tower in [*goal.towers(), *((block,) for block in goal.clear if block not in in_towers)]:
-        grounded, shut = tower[0] in goal.bottom, tower[-1] in goal.clear
-        standing = [place[block] for block in tower if block in place]
-        if any(upper != (lower[0], lower[1] + 1) for lower, upper in itertools.pairwise(standing)):
-            return False
-        if not standing:
-            if grounded or len(tower) > 1:
-                waiting.append((grounded, shut))
-            continue
-        (number, height), (_, highest) = standing[0], standing[-1]
-        if (grounded and height > 0) or (shut and highest < len(piles[number]) - 1):
-            return False
-        if len(piles) == 1 and not _continues_on_top(tower, place, len(piles[0])):
-            return False
-        open_bottom -= {number} if grounded else set()
-        open_top -= {number} if shut else set()
-        sealed |= {number} if shut and (grounded or len(piles) == 1) else set()
-    alone = waiting.count((True, True))
-    empty = [number for number, pile in enumerate(piles) if not pile]
-    if alone > len(empty):
-        return False
-    rest = set(range(len(piles))).difference(empty[:alone])
-    if waiting.count((True, False)) > len(open_bottom & rest) or waiting.count((False, True)) > len(open_top & rest):
-        return False
-    return (False, False) not in waiting or bool(rest - sealed)
-
-
-def _continues_on_top(tower: Pile, place: dict[str, tuple[int, int]], height: int) -> bool:
-    """Whether the blocks of `tower` that are still to be put follow the standing ones, on top of the only pile."""
-    standing = sum(block in place for block in tower)
-    if any(block not in place for block in tower[:standing]):
-        return False
-    return standing == len(tower) or place[tower[standing - 1]][1] == height - 1

@@ -195,6 +195,7 @@ class Instance:
             return None
         shown = shown_locations(self)
         further = [(carrier.name, carrier.holds) for carrier in self.carriers]
+        further += [] if self.hand is None else [("hand", (self.hand,))]
         start = Arrangement(
             f"start{idle_remark(self)}", [*((at, self.start[at]) for at in shown), *further], self.table
         )
@@ -225,12 +226,28 @@ def shown_goal(instance: Instance) -> tuple[dict[str, tuple[str, ...]], tuple[st
         case PositionsGoal() as goal:
             return goal.stacks(), instance.stacks, " (the rest anywhere)"
         case OnGoal() as goal:
-            grounded, piles = set(goal.bottom), {}
-            for number, tower in enumerate(goal.towers()):
-                piles[f"{'floor' if tower[0] in grounded else 'any'} {number}"] = tower
-            return piles, tuple(piles), " (at any location, on its floor or on anything)"
+            return _shown_relations(goal)
         case _:
             no_goal(instance.goal)
+
+
+def _shown_relations(goal: OnGoal) -> tuple[dict[str, tuple[str, ...]], tuple[str, ...], str]:
+    """Return the towers of an `on` goal as columns that say what they stand on, and a remark."""
+    bottom, ontable = set(goal.bottom), set(goal.ontable)
+    loaded = set(goal.on.values())
+    towers = goal.towers()
+    towers += [(block,) for block in goal.ontable if not (block in bottom or block in loaded or block in goal.on)]
+    piles = {}
+    for number, tower in enumerate(towers):
+        grounded = tower[0] in bottom or (tower[0] in ontable and len(tower) > 1)
+        under = "floor" if grounded else "table" if tower[0] in ontable else "any"
+        piles[f"{under} {number}"] = tower
+    remark = "at any location, on its floor or on anything"
+    if any(column.startswith("table") for column in piles):
+        remark = "any location; table: a floor or the table region"
+    if goal.clear:
+        remark += f"; clear: {_listed(goal.clear)}"
+    return piles, tuple(piles), f" ({remark})"
 
 
 @dataclass(frozen=True, slots=True)

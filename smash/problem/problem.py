@@ -70,6 +70,11 @@ class Problem:
         return posed(self.instance, falls=bool(self.kinds))
 
     @cached_property
+    def as_posed(self) -> Problem:
+        """The problem of the posed instance; this problem where that is the same."""
+        return self if self.posed is self.instance else self._like(self.posed, self.kinds)
+
+    @cached_property
     def open_rest(self) -> str | None:
         """In a few words what the goal leaves open by `ontable` and `clear`; None where it comes to `bottom` alone."""
         return open_rest(self.posed)
@@ -89,10 +94,13 @@ class Problem:
         """The plain twin, whose plans are plans of this problem (`from_twin`); this problem where it is plain."""
         if self.plain:
             return self
-        twin = Problem(plain_twin(self.instance), self.options)
-        topple = tuple(kind for kind in self.kinds if kind.name == "topple")
-        vars(twin)["law"] = Law(twin.instance, twin.options, topple)  # known here: nobody has to be asked again
-        return twin
+        return self._like(plain_twin(self.instance), tuple(kind for kind in self.kinds if kind.name == "topple"))
+
+    def _like(self, instance: Instance, kinds: tuple[AggregatingKind[Any], ...]) -> Problem:
+        """Return the problem of another instance, whose kinds are known: nobody has to be asked again."""
+        other = Problem(instance, self.options)
+        vars(other)["law"] = Law(instance, self.options, kinds)
+        return other
 
     def with_buffers(self, count: int) -> Problem:
         """Return the problem with `count` buffers.

@@ -10,7 +10,7 @@ from unified_planning.io import PDDLReader, PDDLWriter
 from unified_planning.shortcuts import get_environment
 from unified_planning.test.examples import get_example_problems
 
-from smash.problem import PlanOptions, Unsupported, make_instance, read_instance
+from smash.problem import OnGoal, PlanOptions, Unsupported, make_instance, read_instance
 from smash.problem.files.instances import instance_document
 from smash.problem.model import StacksGoal
 from smash.problem.sets.suites import suite_files
@@ -43,6 +43,18 @@ def test_oneshot_solves_every_encoding_and_the_library_accepts_the_plan(factory,
         result = planner.solve(problem, timeout=60)
     assert result.status == PlanGenerationResultStatus.SOLVED_OPTIMALLY
     assert result.metrics["lower_bound"] == str(optimal_cost(figure_1(), options))
+    with factory.PlanValidator(problem_kind=problem.kind) as validator:
+        assert validator.validate(problem, result.plan)
+
+
+def test_words_and_a_full_hand_are_read_and_the_library_accepts_the_plan(factory):
+    goal = OnGoal({"a": "b"}, ontable=("c", "d"), clear=("c",))
+    instance = make_instance({"s1": ["c", "b", "d"]}, goal, stacks=2, buffers=1, hand="a")
+    problem = up_problem(instance, PlanOptions(), "chain")
+    with factory.OneshotPlanner(name="smash", params={"planner": "fd-opt-ipdb"}) as planner:
+        result = planner.solve(problem, timeout=60)
+    assert result.status == PlanGenerationResultStatus.SOLVED_OPTIMALLY
+    assert result.metrics["lower_bound"] == str(optimal_cost(instance))
     with factory.PlanValidator(problem_kind=problem.kind) as validator:
         assert validator.validate(problem, result.plan)
 

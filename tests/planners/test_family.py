@@ -13,7 +13,7 @@ from smash.problem.problem import Problem
 from smash.problem.views.distances import Estimate
 from tests.cheapest import cheapest_plan
 from tests.problem.test_family import scoop
-from tests.strategies import family_instances, family_options
+from tests.strategies import EVERY_KIND, family_instances, family_options
 
 
 def solve_options(options):
@@ -21,7 +21,7 @@ def solve_options(options):
 
 
 @pytest.mark.parametrize("planner", [SmashPlanner(), AStarPlanner()])
-@given(instance=family_instances(), options=family_options())
+@given(instance=family_instances(kinds=EVERY_KIND, hand=True), options=family_options())
 @settings(max_examples=60, deadline=None)
 def test_the_optimum_is_that_of_uniform_cost_search(planner, instance, options):
     best = cheapest_plan(instance, options)

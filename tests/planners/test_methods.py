@@ -56,7 +56,7 @@ def test_methods_run_in_their_order_until_the_log_is_settled():
     ran = []
     log = SolveLog(Problem(swap()))
     proves = noting(ran, "second", act=lambda log: log.refute("second"))
-    walk([noting(ran, "first"), proves, noting(ran, "third")], log, LATER)
+    walk([noting(ran, "first"), proves, noting(ran, "third")], log.problem, log, LATER)
     assert [name for name, _ in ran] == ["first", "second"]
     assert log.plan().status == "infeasible"
     assert list(log.details["seconds"]) == ["first", "second"]
@@ -65,14 +65,15 @@ def test_methods_run_in_their_order_until_the_log_is_settled():
 def test_a_method_that_does_not_take_the_problem_is_left_out_with_its_reason():
     ran = []
     log = SolveLog(Problem(read_instance(SCOOP)))
-    walk([noting(ran, "fast", plain), noting(ran, "general", not_plain)], log, LATER)
+    walk([noting(ran, "fast", plain), noting(ran, "general", not_plain)], log.problem, log, LATER)
     assert [name for name, _ in ran] == ["general"]
     assert log.details["left_out"] == {"fast": "it counts picks, places and topples"}
 
 
 def test_after_the_deadline_only_the_first_method_runs():
     ran = []
-    walk([noting(ran, "first"), noting(ran, "second")], SolveLog(Problem(swap())), 0.0)
+    log = SolveLog(Problem(swap()))
+    walk([noting(ran, "first"), noting(ran, "second")], log.problem, log, 0.0)
     assert [name for name, _ in ran] == ["first"]
 
 

@@ -15,7 +15,7 @@ from smash.problem.problem import Problem
 from smash.problem.sets.generators import generate
 from smash.problem.sets.suites import read_suite
 from tests.oracle import optimal_cost
-from tests.strategies import instances, plan_options
+from tests.strategies import EVERY_KIND, instances, plan_options
 
 
 def with_buffers(instance, count):
@@ -25,7 +25,7 @@ def with_buffers(instance, count):
 
 
 @settings(max_examples=150, deadline=None)
-@given(instances(max_blocks=4, odd_names=True), plan_options())
+@given(instances(max_blocks=4, odd_names=True, kinds=EVERY_KIND, hand=True), plan_options())
 def test_the_default_proves_the_optimum_or_that_there_is_no_plan(instance, options):
     best = optimal_cost(instance, options)
     result = SmashPlanner().solve(instance, SolveOptions(options.topple, options.max_topple), 20)
@@ -36,7 +36,7 @@ def test_the_default_proves_the_optimum_or_that_there_is_no_plan(instance, optio
 
 
 @settings(max_examples=60, deadline=None)
-@given(instances(max_blocks=4), plan_options())
+@given(instances(max_blocks=4, kinds=EVERY_KIND, hand=True), plan_options())
 def test_the_precedence_bound_never_exceeds_the_optimum_of_the_search(instance, options):
     settings_ = SolveOptions(options.topple, options.max_topple)
     bounded = PrecedencePlanner().solve(instance, settings_, 10)

@@ -6,6 +6,7 @@ from smash.problem import IllegalAction, OnGoal, Pick, Place, PlanOptions, State
 from smash.problem.errors import MalformedFile
 from smash.problem.files.instances import instance_document, instance_from_document, read_instance, write_instance
 from smash.problem.hand import after_place, distinct_locations
+from smash.problem.model import shown_goal
 from smash.problem.problem import Problem
 from smash.problem.rules import Law
 from tests.oracle import optimal_cost
@@ -140,3 +141,14 @@ def test_equal_locations_stand_for_each_other():
     assert after_place(instance, "s1").start["s1"] == ("a", "b")
     placed = make_instance({"s1": ["a"]}, {"s2": ["b", "a"]}, stacks=3, buffers=2, hand="b")
     assert list(distinct_locations(placed)) == ["s1", "s2", "s3", "u1"]
+
+
+def test_pictures_show_the_hand_and_what_lies_on_the_table():
+    goal = OnGoal({"p": "q", "x": "t"}, (), ("q", "r", "u"), ("p", "u"))
+    instance = make_instance({"s1": ["p", "q", "r"], "s2": ["t"]}, goal, table=["u"], hand="x")
+    piles, columns, remark = shown_goal(instance)
+    assert piles == {"floor 0": ("q", "p"), "any 1": ("t", "x"), "table 2": ("r",), "table 3": ("u",)}
+    assert columns == tuple(piles)
+    assert remark == " (any location; table: a floor or the table region; clear: p u)"
+    assert ">hand<" in instance._repr_svg_()
+    assert "'x' in the hand" in repr(instance)

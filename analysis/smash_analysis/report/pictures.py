@@ -66,6 +66,7 @@ def scenes(document: dict[str, Any]) -> tuple[list[Scene], str]:
     piles = [(name, start.get(name, [])) for name in used]
     table = [str(block) for block in document.get("table", [])]
     piles += [("table", [block]) for block in table]
+    piles += [("hand", [str(document["hand"])])] if document.get("hand") is not None else []
     wanted, aimed, note = _goal(goal, stacks)
     tallest = max([1, *(len(pile) for _, pile in [*piles, *wanted])])
     return [_scene("Start", piles, aimed, tallest), _scene("Goal", wanted, aimed, tallest)], note
@@ -83,14 +84,17 @@ def _goal(goal: dict[str, Any], stacks: Sequence[str]) -> tuple[list[tuple[str, 
             drawn = [(name, [block for _, block in sorted(piles.get(name, []))]) for name in stacks]
             return drawn, set(goal["positions"]), "the marked blocks; the rest may be anywhere"
     above = {under: upper for upper, under in goal["on"].items()}
-    bottom = list(goal.get("bottom", []))
+    bottom, ontable, clear = (list(goal.get(key, [])) for key in ("bottom", "ontable", "clear"))
+    single = [block for block in dict.fromkeys([*bottom, *ontable]) if block not in above and block not in goal["on"]]
     towers = []
-    for base in [*(b for b in above if b not in goal["on"]), *(b for b in bottom if b not in above)]:
+    for base in [*(b for b in above if b not in goal["on"]), *single]:
         tower = [base]
         while tower[-1] in above:
             tower.append(above[tower[-1]])
-        towers.append(("at the bottom" if base in bottom else "on anything", tower))
-    return towers, {block for _, tower in towers for block in tower}, "these towers, at any location"
+        under = "at the bottom" if base in bottom else "on the table" if base in ontable else "on anything"
+        towers.append((under, tower))
+    note = "these towers, at any location" + (f"; clear: {', '.join(clear)}" if clear else "")
+    return towers, {block for _, tower in towers for block in tower}, note
 
 
 def _scene(title: str, piles: Sequence[tuple[str, list[str]]], aimed: Iterable[str], tallest: int) -> Scene:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from smash.problem.actions.carry import Carry
-from smash.problem.model import TABLE, Action, Instance, Pick, Place, PlanOptions, State
+from smash.problem.model import Action, Instance, Pick, Place, PlanOptions, State
 from smash_baselines.names import Fact, Step
 from smash_baselines.parts.part import Part, Telling
 
@@ -67,7 +67,7 @@ class CarryPart(Part):
                 yield ("pick-from-carrier", telling.block(block), *stand, *counts)
             case Place(block, carrier):
                 short, station, spot = self._stand(telling, state, carrier)
-                held, origin = len(state.carried[carrier]), layout.spot(state.origin or TABLE)
+                held, origin = len(state.carried[carrier]), layout.origin(state.origin)
                 counts = room(telling, carrier, held), room(telling, carrier, held + 1)
                 yield ("place-on-carrier", telling.block(block), short, station, origin, spot, *counts)
             case Carry(carrier, target):

@@ -33,6 +33,29 @@ def domain_text(texts: Mapping[str, str]) -> str:
     return "\n".join([*lines, "\n\n".join(actions), ")", ""])
 
 
+def extended_text(text: str, old: str, new: str, added: str) -> str:
+    """Return the PDDL text of a domain with a part of the same form as those of the family added to it.
+
+    Args:
+        text: the domain.
+        old: its PDDL name.
+        new: the PDDL name of the result.
+        added: types and predicates, then actions after a line `; --- …`.
+    """
+    sections = {added[start + 1 : end].split(maxsplit=1)[0]: added[start + 1 : end - 1] for start, end in _forms(added)}
+    inside = text.index("(define") + 1
+    pieces, done = [], 0
+    for start, end in _forms(text[inside:]):
+        section = text[inside + start + 1 : inside + end].split(maxsplit=1)[0]
+        if section in SECTIONS and section in sections:
+            lines = sections[section].removeprefix(section).strip()
+            pieces += [text[done : inside + end - 1].rstrip(), f"\n    {lines})"]
+            done = inside + end
+    rest = text[done:].rstrip().removesuffix(")").rstrip()
+    actions = added[added.index("; ---") :].rstrip()
+    return "".join([*pieces, rest, f"\n\n{actions}\n)\n"]).replace(f"(domain {old})", f"(domain {new})", 1)
+
+
 def _forms(text: str) -> Iterator[tuple[int, int]]:
     """Yield where each top-level parenthesised form starts and ends; comments are skipped."""
     depth, start, comment = 0, 0, False

@@ -34,7 +34,8 @@ class HandPart(Part):
     def start(self, telling: Telling) -> Iterator[Fact]:
         """Yield the piles, the table region, and where everything is."""
         layout, instance = telling.layout, telling.instance
-        yield ("hand-empty",)
+        held = instance.hand
+        yield ("hand-empty",) if held is None else ("holding", telling.block(held), layout.origin(None))
         yield ("idle",)
         for location in instance.locations:
             yield from _pile(telling, location)
@@ -125,7 +126,7 @@ def _pick(telling: Telling, state: State, block: str, source: str) -> Step:
 def _place(telling: Telling, state: State, block: str, target: str) -> Step:
     layout = telling.layout
     base, region, pile, short = telling.base(target), layout.region(target), state.piles[target], telling.block(block)
-    way = (layout.spot(state.origin) if state.origin else layout.spot(TABLE), layout.spot(target))
+    way = (layout.origin(state.origin), layout.spot(target))
     if pile:
         return ("place", short, telling.block(pile[-1]), region, *way)
     if base is not None:

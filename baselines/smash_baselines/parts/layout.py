@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TypeVar
@@ -13,6 +14,8 @@ T = TypeVar("T")
 Point = tuple[float, float]
 NOWHERE: Point = (0.0, 0.0)
 """Where everything is as long as no way costs anything."""
+IN_HAND: Point = (math.inf, math.inf)
+"""Where a block is taken from that the hand holds at the start: its first way costs nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +25,8 @@ class Layout:
     Attributes:
         instance: the instance.
         names: its blocks and stack locations.
-        spots: a spot for each position of a place; one in all where travel costs nothing.
+        spots: a spot for each position of a place; one in all where travel costs nothing. Where it costs something and
+            the hand holds a block at the start, one more.
         regions: a region for the stack locations (True) and for the buffers (False) of each spot.
         carriers: the carriers by name.
         stations: the stations by name.
@@ -41,8 +45,9 @@ class Layout:
         instance = self.instance
         stations = dict.fromkeys(station for carrier in instance.carriers for station in carrier.stations)
         places = [*instance.locations, TABLE, *stations]
+        held = [IN_HAND] if instance.hand is not None and instance.costs.travel else []
         fields = {
-            "spots": _numbered("p", [self._point(place) for place in places]),
+            "spots": _numbered("p", [*map(self._point, places), *held]),
             "carriers": numbered("c", [carrier.name for carrier in instance.carriers]),
             "stations": numbered("t", stations),
             "counts": tuple(count_names(max(len(instance.blocks), len(instance.buffers)))),
@@ -55,6 +60,14 @@ class Layout:
     def spot(self, place: str) -> str:
         """Return the spot of a location, the table region or a station."""
         return self.spots[self._point(place)]
+
+    def origin(self, place: str | None) -> str:
+        """Return the spot that the held block was taken from.
+
+        Args:
+            place: where from; None: it is in the hand since the start, or no way costs.
+        """
+        return self.spots[IN_HAND] if place is None and IN_HAND in self.spots else self.spot(place or TABLE)
 
     def region(self, location: str) -> str:
         """Return the region of a location."""
@@ -75,6 +88,8 @@ class Layout:
         for origin, here in samples.items():
             for target, there in samples.items():
                 yield origin, target, self.instance.costs.distance(here, there)
+        if IN_HAND in self.spots:
+            yield from ((self.spots[IN_HAND], target, 0) for target in samples)
 
     def _point(self, place: str) -> Point:
         costs = self.instance.costs

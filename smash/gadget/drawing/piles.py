@@ -27,7 +27,11 @@ def instance_figure(instance: Instance) -> Figure:
     """
     goal, locations, note = shown_goal(instance)
     tall = max([1, *map(len, instance.start.values()), *map(len, goal.values())])
+    start = dict(instance.start)
     shown = shown_locations(instance)
+    if instance.hand is not None:
+        shown += ("hand",)
+        start["hand"] = (*instance.start.get("hand", ()), instance.hand)
     widths = [PITCH * max(5, len(shown)), PITCH * max(5, len(locations))]
     table_rows = -(-len(instance.table) // int((widths[0] - 0.2) / 1.15))
     low = -1.1 - (1.3 + 1.15 * table_rows if instance.table else 0.0)
@@ -36,7 +40,7 @@ def instance_figure(instance: Instance) -> Figure:
     figure = new_figure(SCALE * (sum(widths) + gap), SCALE * (high - low))
     axes = figure.add_axes((0, 0, 1, 1))
     colours = block_colours(instance.blocks)
-    paint_piles(axes, shown, instance.start, colours, 0.0)
+    paint_piles(axes, shown, start, colours, 0.0)
     paint_piles(axes, locations, goal, colours, widths[0] + gap)
     if instance.table:
         _paint_table(axes, instance.table, colours, widths[0], low)

@@ -40,9 +40,9 @@ class AStarPlanner(MethodPlanner):
 
 def search_numbered_states(problem: Problem, log: SolveLog, until: float) -> None:
     """Search for plans cheaper than the log's best until that is proven or `until` [s, clock of `perf_counter`]."""
-    assert log.cost is not None  # a plain problem that is feasible has a greedy plan
+    assert log.upper is not None  # a plain problem that is feasible has a greedy plan
     numbered = problem.numbered
-    search = StateSearch(numbered, problem.options, log.cost, on_bound=lambda bound: log.prove(bound, "astar"))
+    search = StateSearch(numbered, problem.options, log.upper, on_bound=lambda bound: log.prove(bound, "astar"))
     while search.ended is None and left(until) > 0:
         found = search.run(until)
         if found is not None:

@@ -18,12 +18,12 @@ def search_law_states(problem: Problem, log: SolveLog, until: float) -> None:
     The details get the number of expanded states and the end of the last search.
     """
     for weight, share in WEIGHTS:
-        if log.proven:
+        if log.settled:
             return
-        search = LawSearch(problem.law, weight=weight, below=math.inf if log.cost is None else log.cost)
+        search = LawSearch(problem.law, weight=weight, below=math.inf if log.upper is None else log.upper)
         log.prove(search.bound, "places")
         stop = until - (1.0 - share) * left(until)
-        while search.ended is None and not log.proven and left(stop) > 0:
+        while search.ended is None and not log.settled and left(stop) > 0:
             plan = search.run(stop, lambda bound: log.prove(bound, "astar"))
             if plan is None:
                 break
@@ -32,8 +32,8 @@ def search_law_states(problem: Problem, log: SolveLog, until: float) -> None:
                 break
         log.details |= {"expanded": search.expanded, "search": search.ended or "budget", "weight": weight}
         if search.ended == "exhausted":  # whatever the weight, nothing cheaper is left
-            if log.cost is None:
+            if log.upper is None:
                 log.refute("astar")
             else:
-                log.prove(log.cost, "astar")
+                log.prove(log.upper, "astar")
             return

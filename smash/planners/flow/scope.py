@@ -128,7 +128,7 @@ class Scope:
 
 def scope_of(problem: Problem) -> Scope:
     """Return the scope of a problem, whose start must not be its goal."""
-    instance, options = problem.instance, problem.options
+    instance, options = problem.posed, problem.options
     correct = correct_blocks(instance)
     moving = tuple(number for number, block in enumerate(instance.blocks) if block not in correct)
     several, distances = can_stack_several(instance, options), bool(instance.costs.travel)

@@ -11,7 +11,7 @@ import random
 from collections.abc import Sequence
 
 from smash.problem.views.numbered import ON_TABLE, TOPPLE, Numbered, Step
-from smash.problem.views.targets import Piles
+from smash.problem.views.targets import Piles, Resting
 
 NEVER = math.inf
 """The due time of a block that is not needed."""
@@ -52,6 +52,7 @@ class Construction:
             for block in pile:
                 self.goal_of[block] = location
         self.due = [due[block] if goal != ON_TABLE else NEVER for block, goal in enumerate(self.goal_of)]
+        self.resting = Resting(problem)
         self.steps: list[Step] = []
         self.finished_at: list[float] = [NEVER] * problem.blocks
         self.toppled: set[int] = set()
@@ -78,6 +79,8 @@ class Construction:
             while self.finished_at[block] == NEVER:
                 self._dig(block, goal)
                 self._direct_moves()
+        if self.topple:
+            self._let_fall()
         return self.steps
 
     # One step forward.
@@ -153,15 +156,26 @@ class Construction:
         if pile and self.goal_of[pile[-1]] != ON_TABLE:
             self.agenda.append(self.goal_of[pile[-1]])
 
+    def _let_fall(self) -> None:
+        """Bring what may not lie where it does (`Resting`) to where it may, in the end to the table region."""
+        for buffer in range(self.stacks, len(self.piles)):
+            while self._must_leave(buffer):
+                block = self.piles[buffer][-1]
+                self._move(block, self._harbour(block, buffer))
+        for stack in range(self.stacks):
+            while self._must_leave(stack):
+                self._topple(stack)
+
     # Choices.
 
     def _must_leave(self, location: int) -> int:
-        """Return how many top blocks cannot stay: those above the right ones, or from the lowest needed one up."""
+        """Return how many top blocks cannot stay: those above the right ones, or from the first needed or wrong one."""
         pile, done = self.piles[location], self.done[location]
         if done < len(self.target[location]):
             return len(pile) - done
         for level in range(done, len(pile)):
-            if self.goal_of[pile[level]] != ON_TABLE:
+            block = pile[level]
+            if self.goal_of[block] != ON_TABLE or (level and self.resting.wrong(block, pile[level - 1])):
                 return len(pile) - level
         return 0
 
@@ -198,13 +212,24 @@ class Construction:
             if location == source or location in avoid:
                 continue
             release = self._release(location)
-            harm = release < due or release == due < NEVER
+            harm = release < due or release == due < NEVER or (due == NEVER and self._spoils(block, pile))
             key = (harm, -release if harm else release, len(pile))
             if best < 0 or key < least:
                 best, least = location, key
         if best >= 0:
             return best
         return next(location for location in range(self.stacks) if location != source)
+
+    def _spoils(self, block: int, pile: Sequence[int]) -> bool:
+        return bool(pile) and self.resting.wrong(block, pile[-1])
+
+    def _harbour(self, block: int, source: int) -> int:
+        """Return where a block may lie for good when all targets are built; else a stack that it can fall from."""
+        settled = [at for at in range(len(self.piles)) if at != source and not self._must_leave(at)]
+        for location in settled:
+            if not self._spoils(block, self.piles[location]):
+                return location
+        return next((stack for stack in range(self.stacks) if stack not in settled), 0)
 
     def _release(self, location: int) -> float:
         """Return when something under the top of `location` is needed, or the next block is to be put there."""

@@ -8,10 +8,12 @@ more every arrangement can be reached; with topple too.)
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
+from smash.problem.ends import tower_ends
+from smash.problem.model import OnGoal
 from smash.problem.views.numbered import ON_TABLE, Numbered, Step
-from smash.problem.views.targets import Piles, Tower, goal_piles, towers_of
+from smash.problem.views.targets import Piles, goal_piles
 
 
 def line_steps(problem: Numbered) -> list[Step] | None:
@@ -64,44 +66,10 @@ def _with_prefix(pile: list[int], want: Sequence[int], table: set[int]) -> list[
 
 def _tower_ends(problem: Numbered, piles: tuple[list[int], list[int]]) -> Piles | None:
     """Return both final piles of an `on` goal: towers completed from the table, or None."""
-    table = set(problem.table)
-    towers = towers_of(problem)
-    waiting = [tower for tower in towers if all(block in table for block in tower.blocks)]
-    tower_of = {block: tower for tower in towers for block in tower.blocks if block not in table}
-    finals: list[list[int]] = []
-    grounded: list[bool] = []
-    for pile in piles:
-        final: list[int] = []
-        bottom = False
-        for position, tower in _runs(pile, tower_of):
-            if tower is None:
-                final.append(pile[position])
-                continue
-            stays = [block for block in tower.blocks if block not in table]
-            if pile[position : position + len(stays)] != stays or (tower.grounded and final):
-                return None
-            bottom = bottom or tower.grounded
-            final.extend(tower.blocks)
-        finals.append(final)
-        grounded.append(bottom)
-    for tower in sorted(waiting, key=lambda tower: not tower.grounded):
-        if not tower.grounded:
-            finals[0].extend(tower.blocks)
-            continue
-        free = [q for q in range(problem.locations) if not grounded[q]]
-        if not free:
-            return None
-        finals[free[0]][:0] = tower.blocks
-        grounded[free[0]] = True
-    return tuple(tuple(final) for final in finals)
-
-
-def _runs(pile: Sequence[int], tower_of: dict[int, Tower]) -> Iterator[tuple[int, Tower | None]]:
-    """Yield (position, tower) where a run of one tower's blocks begins, (position, None) for a block of none."""
-    for position, block in enumerate(pile):
-        tower = tower_of.get(block)
-        if tower is None or position == 0 or tower_of.get(pile[position - 1]) is not tower:
-            yield position, tower
+    goal, names, number = problem.instance.goal, problem.instance.blocks, problem.block_number
+    assert isinstance(goal, OnGoal)
+    ends = tower_ends(goal, [tuple(names[block] for block in pile) for pile in piles[: problem.locations]])
+    return None if ends is None else tuple(tuple(number[block] for block in end) for end in (*ends, ())[:2])
 
 
 def _swept(start: Sequence[Sequence[int]], ends: Piles, first: int) -> list[Step]:

@@ -55,7 +55,7 @@ def greedy_steps(problem: Problem, deadline: float, seed: int = 0, *, patient: b
         if steps is not None:
             yield steps
         return
-    target = target_piles(numbered)
+    target = target_piles(numbered, falls=problem.options.topple)
     if target is not None:
         yield from _Passes(problem, target, deadline, seed, patient).improving()
 

@@ -82,7 +82,7 @@ class PositionsBuilder(ABC):
     topple: Ints
 
     def __init__(self, problem: Problem, horizon: int, deadline: float) -> None:
-        instance, demands = problem.instance, problem.demands
+        instance, demands = problem.posed, problem.demands
         self.instance, self.demands = instance, demands
         self.cap = problem.options.max_topple
         self.toppled = len(instance.stacks) if problem.options.topple else 0

@@ -113,6 +113,8 @@ class _Plans:
         scheduler = Scheduler(self.problem, chosen_of(graph.choices, chosen))
         limit = started + max(SHORT, share * (self.deadline - started))
         actions = scheduler.plan(min(self.deadline, limit))
+        if actions is not None and self.problem.open_rest is not None and not self._accepted(actions):
+            actions = None
         self._took = perf_counter() - started
         self._idle_until = perf_counter() + 5 * self._took
         if actions is None and self.best is None and self.on_no_plan is not None:
@@ -122,3 +124,7 @@ class _Plans:
             self.best = actions
             if self.on_plan is not None:
                 self.on_plan(actions)
+
+    def _accepted(self, actions: Sequence[Action]) -> bool:
+        """Whether the law takes a plan: where a block rests for good is not all in the graph for every goal."""
+        return self.problem.law.check(actions).accepted

@@ -15,7 +15,7 @@ import numpy as np
 from smash.planners.precedence.cycles import CycleFinder
 from smash.planners.precedence.dive import dive
 from smash.planners.precedence.graph import Floats, PrecedenceGraph, build_graph
-from smash.problem.certificate import ONE, Cases, Certificate, Leaf
+from smash.problem.certificate import ONE, PLACE_COST, Cases, Certificate, FirstPlace, Leaf, first_problems
 from smash.problem.problem import Problem
 
 Fixed = dict[int, int]
@@ -26,10 +26,39 @@ def certify(problem: Problem, deadline: float, known: Iterable[tuple[int, ...]] 
     """Prove as good a lower bound as the time allows, and return the proof.
 
     Args:
-        problem: a feasible one.
+        problem: a plain, feasible one.
         deadline: when to stop, in seconds of `time.perf_counter`; the certificate then proves what it can.
-        known: cycles found before (`HittingSet.cycles`), to start from.
+        known: cycles found before (`HittingSet.cycles`), to start from; none of a full hand's.
     """
+    cycles: list[list[str]] = []
+    proof: Leaf | Cases = Leaf([])
+    firsts: list[FirstPlace] = []
+    if problem.instance.hand is None:
+        cycles, proof, bound = _proof(problem, deadline, known)
+    else:
+        rests = first_problems(problem.instance, problem.options)
+        for number, (place, rest) in enumerate(rests.items()):
+            until = perf_counter() + max(0.0, deadline - perf_counter()) / (len(rests) - number)
+            each, part, least = _proof(Problem(rest, problem.options), until, ())
+            firsts.append(FirstPlace(place, least, each, part))
+        bound = PLACE_COST + min(first.bound for first in firsts)
+    return Certificate(
+        format="smash-certificate/1",
+        instance=problem.instance.name,
+        topple=problem.options.topple,
+        max_topple=problem.options.max_topple,
+        bound=bound,
+        cycles=cycles,
+        proof=proof,
+        note="the time ran out before more was proven" if perf_counter() > deadline else "",
+        first_places=firsts,
+    )
+
+
+def _proof(
+    problem: Problem, deadline: float, known: Iterable[tuple[int, ...]]
+) -> tuple[list[list[str]], Leaf | Cases, int]:
+    """Return the cycles that a proof for an empty hand uses, the proof, and the bound."""
     prover = _Prover(build_graph(problem), deadline)
     for cycle in known:
         prover.add(cycle)
@@ -37,17 +66,8 @@ def certify(problem: Problem, deadline: float, known: Iterable[tuple[int, ...]] 
     graph = prover.graph
     used = sorted(_rows_of(proof))
     rank = {row: position for position, row in enumerate(used)}
-    note = "the time ran out before more was proven" if perf_counter() > deadline else ""
-    return Certificate(
-        format="smash-certificate/1",
-        instance=problem.instance.name,
-        topple=problem.options.topple,
-        max_topple=problem.options.max_topple,
-        bound=graph.base_cost + bound,
-        cycles=[[graph.blocks[block] for block in prover.cycles[row]] for row in used],
-        proof=_renumbered(proof, rank),
-        note=note,
-    )
+    cycles = [[graph.blocks[block] for block in prover.cycles[row]] for row in used]
+    return cycles, _renumbered(proof, rank), graph.base_cost + bound
 
 
 class _Prover:

@@ -78,6 +78,9 @@ class Scheduler:
         self.bottoms = {located + k for k, chain in enumerate(demands.floating) if chain.bottom}
         self.chain_of = {block: number for number, chain in enumerate(self.chains) for block in chain}
         self.rank = {block: rank for chain in self.chains for rank, block in enumerate(chain)}
+        goal = problem.posed.goal
+        self.clear = frozenset(goal.clear if isinstance(goal, OnGoal) else ())
+        self.on_table = frozenset(goal.ontable if isinstance(goal, OnGoal) else ())
         self.aside = {instance.start[c.location][c.low - 1] for c in choices if not c.topple}
         self.segments = disjoint_segments(choices)
         self._extend_segments()
@@ -213,9 +216,9 @@ class Scheduler:
             block = state.piles[location][-1]
             if len(state.piles[location]) != self.demands.keep[location] + count:
                 continue
-            finished = self._finished(state)
-            if finished:
-                self._move(state, block, finished[0])
+            grounds = [] if block in self.on_table else self._grounds(state)
+            if grounds:
+                self._move(state, block, grounds[0])
                 return True
         return False
 
@@ -271,7 +274,7 @@ class Scheduler:
             block = self.chains[number][0]
             if state.placed[number] or not self._accessible(state, block):
                 continue
-            places = free[:1] if number in self.bottoms else [*self._finished(state)[:1], *free[:1]][:1]
+            places = free[:1] if number in self.bottoms else [*self._grounds(state)[:1], *free[:1]][:1]
             for location in places:
                 after = state.copy()
                 self._place(after, block, location)
@@ -352,6 +355,10 @@ class Scheduler:
     def _finished(self, state: Progress) -> list[str]:
         """Return the locations with blocks, none of which has to move, and with nothing to come."""
         return [at for at, pile in state.piles.items() if pile and self._next_event(state, at) is None]
+
+    def _grounds(self, state: Progress) -> list[str]:
+        """Return the finished locations on which something may stay."""
+        return [at for at in self._finished(state) if state.piles[at][-1] not in self.clear]
 
     def _free(self, state: Progress) -> list[str]:
         """Return the empty locations where nothing is to come."""

@@ -9,94 +9,145 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from time import perf_counter
 
-from smash.planners.protocol.answer import OnIncumbent
 from smash.planners.protocol.clock import left
 from smash.planners.protocol.log import SolveLog
 from smash.problem.hand import after_place, distinct_locations
 from smash.problem.model import Action, Place, State
-from smash.problem.plan import Plan
 from smash.problem.problem import Problem
 
-FIRST_SECONDS = 0.05
+FIRST_SECONDS = 0.1
 """For the first look at each place; what is still open then gets `GROWTH` times as long, and so on."""
 GROWTH = 4.0
+ENDED_SHARE = 0.5
+"""A look that took no more than this share of its time ended by itself: only far more time may help it."""
+ORDER_SHARE = 0.1
+"""Share of the time in which the places are put in order; the others come last."""
 
-PlanRest = Callable[[Problem, float, OnIncumbent], Plan]
-"""Plans a problem whose hand is empty, within a budget [s]."""
+PlanRest = Callable[[SolveLog, float], object]
+"""Plans the problem of a log, whose hand is empty, until a time [s, clock of `perf_counter`]."""
 
 
 @dataclass(slots=True)
 class _First:
-    """A first place: what it costs, what is left to plan, and what the rest costs at least."""
+    """A first place: what it costs, what is left to plan, and what the rest costs at least.
+
+    `guess` is what the rest seems to cost; `ended` where the last look left time over.
+    """
 
     place: Place
     price: int
     rest: Problem
+    guess: float = math.inf
     bound: float = 0.0
     origin: str = "start"
+    ended: bool = False
 
     @property
     def least(self) -> float:
         """What a plan that begins so costs at least."""
         return self.price + self.bound
 
+    @property
+    def promise(self) -> tuple[float, float]:
+        """What the places are looked at in the order of."""
+        return self.least, self.price + self.guess
 
-def plan_first_places(problem: Problem, log: SolveLog, deadline: float, plan_rest: PlanRest) -> None:
+
+def plan_first_places(log: SolveLog, deadline: float, plan_rest: PlanRest) -> None:
     """Plan from every first place, the most promising first, until the best plan is proven or `deadline`.
 
+    At least one of them is looked at, however late it is.
+
     Args:
-        problem: one with a block in the hand at the start.
-        log: takes plans and bounds.
+        log: takes plans and bounds; its problem has a block in the hand at the start.
         deadline: when to stop [s, clock of `perf_counter`].
         plan_rest: plans from where the hand is empty.
     """
-    firsts = _firsts(problem)
-    seconds = FIRST_SECONDS
-    while True:
-        open_firsts = [first for first in firsts if log.cost is None or first.least < log.cost]
+    firsts = _firsts(log.problem, perf_counter() + ORDER_SHARE * max(0.0, left(deadline)))
+    seconds, looked = FIRST_SECONDS, False
+    while not log.settled:
         _prove(firsts, log)
-        if not open_firsts or log.settled:
+        waiting = sorted((first for first in firsts if _open(first, log)), key=lambda first: first.promise)
+        if not waiting:
             return
-        for number, first in enumerate(sorted(open_firsts, key=lambda first: first.least)):
-            if left(deadline) <= 0:
+        last = all(first.ended for first in waiting)  # all the time that is left, and that is it
+        for number, first in enumerate(waiting):
+            if looked and left(deadline) <= 0:
                 return
-            if log.cost is not None and first.least >= log.cost:
-                continue
-            last = len(open_firsts) == 1
-            share = left(deadline) if last else min(seconds, left(deadline) / (len(open_firsts) - number))
-            _look(first, log, share, plan_rest)
-            _prove(firsts, log)
+            if _open(first, log):
+                most = left(deadline) / (len(waiting) - number)
+                _look(first, firsts, log, most if last or len(waiting) == 1 else min(seconds, most), plan_rest)
+                looked = True
+        if last:
+            return
         seconds *= GROWTH
 
 
-def _firsts(problem: Problem) -> list[_First]:
+def _open(first: _First, log: SolveLog) -> bool:
+    """Whether a look at a first place may find a better plan."""
+    return first.least < (math.inf if log.upper is None else log.upper)
+
+
+def _firsts(problem: Problem, until: float) -> list[_First]:
     instance, law = problem.instance, problem.law
     assert instance.hand is not None
     start = State.start_of(instance)
-    firsts = []
+    firsts: list[_First] = []
     for target in (*distinct_locations(instance), *law.open_carriers(start)):
         place = Place(instance.hand, target)
-        rest = Problem(after_place(instance, target), problem.options)
-        firsts.append(_First(place, law.cost(start, place), rest))
+        first = _First(place, law.cost(start, place), Problem(after_place(instance, target), problem.options))
+        if left(until) > 0 or not firsts:
+            _judge(first)
+        firsts.append(first)
     return firsts
 
 
-def _look(first: _First, log: SolveLog, seconds: float, plan_rest: PlanRest) -> None:
-    """Plan from a first place for some seconds; keep what that proves."""
+def _judge(first: _First) -> None:
+    """Guess what is left to do: two actions a block that has to be put, one a stack of which some fall."""
+    rest = first.rest
+    if rest.infeasible is not None:
+        first.bound, first.origin = math.inf, "feasibility"
+        return
+    demands = rest.demands
+    disturbed = sum(bool(pile) for pile in demands.leaving.values())
+    first.guess = 2 * len(demands.placed) + (disturbed if rest.options.topple else 2 * len(demands.loose))
 
-    def found(_seconds: float, _cost: int, actions: Sequence[Action]) -> None:
-        log.offer((first.place, *actions), log_origin)
 
-    log_origin = "exact"
-    answer = plan_rest(first.rest, seconds, found)
-    if answer.actions is not None:
-        log.offer((first.place, *answer.actions), answer.incumbents[-1].origin if answer.incumbents else log_origin)
-    if answer.status == "infeasible":
-        first.bound, first.origin = math.inf, answer.bound_origin or "start"
-    elif answer.lower_bound is not None and answer.lower_bound > first.bound:
-        first.bound, first.origin = answer.lower_bound, answer.bound_origin or "start"
-    log.details.setdefault("first_places", {})[first.place.target] = dict(answer.details)
+def _look(first: _First, firsts: Sequence[_First], log: SolveLog, seconds: float, plan_rest: PlanRest) -> None:
+    """Plan from a first place for some seconds; keep what that proves, at once."""
+    relay = _Relayed(first, firsts, log)
+    worth = None if log.upper is None else log.upper - first.price
+    relay.inner = inner = SolveLog(first.rest, relay, gentle=log.gentle, worth=worth)
+    began = perf_counter()
+    plan_rest(inner, began + seconds)
+    if inner.refuted is not None:
+        first.bound, first.origin = math.inf, inner.refuted
+    _prove(firsts, log)
+    first.ended = perf_counter() - began < ENDED_SHARE * seconds
+    log.details.setdefault("first_places", {})[first.place.target] = inner.details
+
+
+@dataclass(slots=True)
+class _Relayed:
+    """Hands what is found and proven from a first place to the log of the whole problem."""
+
+    first: _First
+    firsts: Sequence[_First]
+    log: SolveLog
+    inner: SolveLog | None = None
+
+    def __call__(self, seconds: float, cost: int, actions: Sequence[Action]) -> None:
+        """Take a plan, under the origin that it has in the log of the rest."""
+        assert self.inner is not None
+        self.log.offer((self.first.place, *actions), self.inner.entries[-1].origin)
+
+    def bound(self, seconds: float, bound: int, origin: str) -> None:
+        """Take a lower bound."""
+        if bound > self.first.bound:
+            self.first.bound, self.first.origin = bound, origin
+            _prove(self.firsts, self.log)
 
 
 def _prove(firsts: Sequence[_First], log: SolveLog) -> None:
@@ -104,5 +155,5 @@ def _prove(firsts: Sequence[_First], log: SolveLog) -> None:
     least = min(firsts, key=lambda first: first.least)
     if least.least == math.inf:
         log.refute(least.origin)
-    elif least.bound > 0 or least.origin != "start":
+    elif least.bound > 0 or (log.cost is not None and least.least >= log.cost):
         log.prove(int(least.least), least.origin)

@@ -29,21 +29,32 @@ class SolveLog:
         entries: every plan that was better than those before it.
         refusals: what was offered and the law refused.
         details: what only this planner measures.
+        gentle: whether topples of its plans are softened.
+        worth: a plan that costs so much or more helps nobody, None where every plan does.
     """
 
-    def __init__(self, problem: Problem, on_incumbent: OnIncumbent | None = None, *, gentle: bool = False) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        on_incumbent: OnIncumbent | None = None,
+        *,
+        gentle: bool = False,
+        worth: int | None = None,
+    ) -> None:
         """Start the clock.
 
         Args:
             problem: what is planned.
             on_incumbent: called with every better plan; its `bound`, where it has one, with every better bound.
             gentle: let no block fall that can as well be picked from its stack (`gentle_topples`).
+            worth: a plan that costs so much or more helps nobody.
         """
         self._started = perf_counter()
         self.problem = problem
         self._report = on_incumbent
         self._report_bound = getattr(on_incumbent, "bound", None)
-        self._gentle = gentle and problem.plain
+        self.gentle = gentle and problem.plain
+        self.worth = worth
         self.entries: list[Incumbent] = []
         self.best: tuple[Action, ...] | None = None
         self.cost: int | None = None
@@ -64,9 +75,15 @@ class SolveLog:
         return self.cost is not None and self.bound is not None and self.bound >= self.cost
 
     @property
+    def upper(self) -> int | None:
+        """What a plan has to cost less than to be of use: the best cost, or what any plan is worth."""
+        return min((cost for cost in (self.cost, self.worth) if cost is not None), default=None)
+
+    @property
     def settled(self) -> bool:
-        """Whether nothing is left to be found: the best plan is proven, or that there is none."""
-        return self.proven or self.refuted is not None
+        """Whether nothing is left to be found: no plan is better than the best, or of use, or there is none."""
+        upper = self.upper
+        return self.refuted is not None or (upper is not None and self.bound is not None and self.bound >= upper)
 
     def offer(self, actions: Sequence[Action], origin: str, seconds: float | None = None) -> bool:
         """Take a plan if it is legal and better than the best; report it at once.
@@ -141,7 +158,7 @@ class SolveLog:
         )
 
     def _softened(self, actions: Sequence[Action]) -> tuple[Action, ...]:
-        if self._gentle:
+        if self.gentle:
             softened = gentle_topples(self.problem.law, actions)
             if self.problem.law.check(softened).accepted:
                 return softened

@@ -57,11 +57,12 @@ class Method:
         return min(deadline, perf_counter() + min(self.most, share * left(deadline)))
 
 
-def walk(methods: Sequence[Method], log: SolveLog, deadline: float) -> None:
+def walk(methods: Sequence[Method], problem: Problem, log: SolveLog, deadline: float) -> None:
     """Run the methods in turn until the log is settled or the time is over; the first that takes the problem always.
 
     Args:
         methods: the table of a planner.
+        problem: what they plan; its plans are plans of the log's.
         log: takes plans and bounds; its details get the seconds of each method, and why one was left out.
         deadline: when to stop [s, clock of `perf_counter`].
     """
@@ -69,12 +70,12 @@ def walk(methods: Sequence[Method], log: SolveLog, deadline: float) -> None:
     for method in methods:
         if log.settled or (seconds and left(deadline) <= 0):
             break
-        reason = method.takes(log.problem)
+        reason = method.takes(problem)
         if reason is not None:
             log.details.setdefault("left_out", {})[method.name] = reason
             continue
         began = perf_counter()
-        method.run(log.problem, log, method.until(deadline))
+        method.run(problem, log, method.until(deadline))
         seconds[method.name] = perf_counter() - began
     log.details["seconds"] = seconds
 
@@ -109,17 +110,22 @@ class MethodPlanner(ProblemPlanner):
         """
         deadline = deadline_of(budget, self.kept_back)
         log = SolveLog(problem, on_incumbent, gentle=self.gentle)
+        self._solve(log, settings, deadline)
+        return log.plan()
+
+    def _solve(self, log: SolveLog, settings: Settings, deadline: float) -> None:
+        problem = log.problem
         if problem.solved:
             log.offer((), "start")
             log.prove(0, "start")
-        elif problem.infeasible is not None:
+            return
+        if problem.infeasible is not None:
             log.refute("feasibility", problem.infeasible)
-        elif problem.instance.hand is not None:
-            plan_first_places(
-                problem, log, deadline, lambda rest, seconds, found: self.plan(rest, settings, seconds, found)
-            )
+            return
+        if self.proves:
+            log.prove(0, "start")
+        if problem.instance.hand is None:
+            asked = problem.as_posed
+            walk(self.methods(asked, settings), asked, log, deadline)
         else:
-            if self.proves:
-                log.prove(0, "start")
-            walk(self.methods(problem, settings), log, deadline)
-        return log.plan()
+            plan_first_places(log, deadline, lambda rest, until: self._solve(rest, settings, until))

@@ -15,7 +15,7 @@ from smash.problem.sets.generators import generate
 from smash.problem.sets.suites import read_suite
 from smash.problem.views.numbered import Numbered, cost_of
 from tests.oracle import optimal_cost
-from tests.strategies import instances, plan_options
+from tests.strategies import EVERY_KIND, instances, plan_options
 
 pytestmark = pytest.mark.usefixtures("machine_code")
 
@@ -36,7 +36,7 @@ def greedy_cost(problem, options):
 
 
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
-@given(instances(max_blocks=4), plan_options())
+@given(instances(max_blocks=4, kinds=EVERY_KIND), plan_options())
 def test_passes_without_a_state_left_out_end_with_the_optimum_of_exhaustive_search(instance, options):
     best = optimal_cost(instance, options)
     assume(best is not None)
@@ -52,7 +52,7 @@ def test_passes_without_a_state_left_out_end_with_the_optimum_of_exhaustive_sear
 
 
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
-@given(instances(max_blocks=4), plan_options())
+@given(instances(max_blocks=4, kinds=EVERY_KIND), plan_options())
 def test_nothing_is_found_and_that_is_proven_where_the_plan_known_is_the_best(instance, options):
     best = optimal_cost(instance, options)
     assume(best)

@@ -11,7 +11,7 @@ from smash.planners.astar.bound import lower_bound
 from smash.problem import PlanOptions, PositionsGoal, StacksGoal, State, make_instance
 from tests.oracle import optimal_cost
 from tests.planners.astar.hands import Hand, begun_at, walked
-from tests.strategies import instances, plan_options
+from tests.strategies import EVERY_KIND, instances, plan_options
 
 
 def bound_of(instance, options, state=None):
@@ -22,7 +22,7 @@ def bound_of(instance, options, state=None):
 
 
 @settings(max_examples=80, deadline=None)
-@given(instances(max_blocks=4), plan_options(), st.integers(0, 9999))
+@given(instances(max_blocks=4, kinds=EVERY_KIND), plan_options(), st.integers(0, 9999))
 def test_no_state_has_a_bound_above_its_optimum(instance, options, seed):
     state = walked(instance, options, random.Random(seed))
     best = optimal_cost(begun_at(instance, state), options)

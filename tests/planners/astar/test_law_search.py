@@ -9,7 +9,7 @@ from smash.planners.astar import law_search
 from smash.planners.astar.law_search import LawSearch
 from smash.problem import Carrier, Costs, Law, PlanOptions, PositionsGoal, StacksGoal, State, make_instance
 from tests.cheapest import cheapest_plan
-from tests.strategies import family_instances, family_options
+from tests.strategies import EVERY_KIND, family_instances, family_options
 
 NO_TOPPLE = PlanOptions(topple=False)
 
@@ -37,7 +37,7 @@ EXCHANGE = make_instance(
 
 
 @settings(max_examples=40, deadline=None)
-@given(family_instances(max_blocks=3, max_stacks=2), family_options())
+@given(family_instances(max_blocks=3, max_stacks=2, kinds=EVERY_KIND), family_options())
 def test_the_first_plan_is_a_cheapest_one_and_the_end_is_its_proof(instance, options):
     best = cheapest_plan(instance, options)
     search, plans, bounds = searched(instance, options)
@@ -51,7 +51,7 @@ def test_the_first_plan_is_a_cheapest_one_and_the_end_is_its_proof(instance, opt
 
 
 @settings(max_examples=30, deadline=None)
-@given(family_instances(max_blocks=3, max_stacks=2), family_options())
+@given(family_instances(max_blocks=3, max_stacks=2, kinds=EVERY_KIND), family_options())
 def test_with_a_weight_plans_improve_to_a_cheapest_one_and_only_the_start_bounds(instance, options):
     best = cheapest_plan(instance, options)
     search, plans, bounds = searched(instance, options, weight=4.0)

@@ -12,7 +12,7 @@ from smash.problem.sets.generators import generate
 from smash.problem.sets.suites import read_suite
 from smash.problem.views.numbered import Numbered, cost_of
 from tests.oracle import optimal_cost
-from tests.strategies import instances, plan_options
+from tests.strategies import EVERY_KIND, instances, plan_options
 
 LOOSE = 6
 """How far above the optimum the search is told that a plan is known: so that it must find one itself."""
@@ -41,7 +41,7 @@ def test_finds_the_optimum_of_exhaustive_search(instance, options):
 
 
 @settings(max_examples=120, deadline=None)
-@given(instances(max_blocks=3, max_stacks=2, max_buffers=1, kinds=("on",)), plan_options())
+@given(instances(max_blocks=3, max_stacks=2, max_buffers=1, kinds=("on", "resting")), plan_options())
 def test_on_goals_with_few_locations_have_the_optimum_of_exhaustive_search(instance, options):
     best = optimal_cost(instance, options)
     assume(best is not None)
@@ -50,7 +50,7 @@ def test_on_goals_with_few_locations_have_the_optimum_of_exhaustive_search(insta
 
 
 @settings(max_examples=100, deadline=None)
-@given(instances(max_blocks=4, odd_names=True), plan_options())
+@given(instances(max_blocks=4, odd_names=True, kinds=EVERY_KIND, hand=True), plan_options())
 def test_the_planner_proves_the_optimum_or_that_there_is_no_plan(instance, options):
     best = optimal_cost(instance, options)
     result = AStarPlanner().solve(instance, SolveOptions(options.topple, options.max_topple), 30)

@@ -13,7 +13,7 @@ from smash.planners.protocol import SolveLog
 from smash.problem import Costs, PlanOptions, StacksGoal, make_instance
 from smash.problem.problem import Problem
 from tests.cheapest import cheapest_plan
-from tests.strategies import family_instances, family_options
+from tests.strategies import EVERY_KIND, family_instances, family_options
 
 LONG = 60.0
 """Seconds that no search here takes."""
@@ -140,7 +140,7 @@ def test_where_memory_ends_nothing_false_is_proven(monkeypatch):
 
 
 @settings(max_examples=30, deadline=None)
-@given(family_instances(max_blocks=3, max_stacks=2), family_options())
+@given(family_instances(max_blocks=3, max_stacks=2, kinds=EVERY_KIND), family_options())
 def test_to_the_end_it_is_as_uniform_cost_search(instance, options):
     log, best = SolveLog(Problem(instance, options)), cheapest_plan(instance, options)
     assume(best is None or best[0])

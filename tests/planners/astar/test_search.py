@@ -24,7 +24,7 @@ from smash.problem import Law, PlanOptions
 from smash.problem.sets.generators import generate
 from smash.problem.views.numbered import Numbered, cost_of
 from tests.oracle import optimal_cost
-from tests.strategies import instances, plan_options
+from tests.strategies import EVERY_KIND, instances, plan_options
 
 
 def opened(instance, options, upper, nodes=20_000, share=50):
@@ -35,7 +35,7 @@ def opened(instance, options, upper, nodes=20_000, share=50):
 
 
 @settings(max_examples=40, deadline=None)
-@given(instances(max_blocks=4), plan_options())
+@given(instances(max_blocks=4, kinds=EVERY_KIND), plan_options())
 def test_where_no_cheaper_plan_is_left_the_best_one_is_the_optimum(instance, options):
     best = optimal_cost(instance, options)
     assume(best is not None)
