@@ -117,8 +117,14 @@ class EngineProcess:
         if self._process.stdout is not None:
             self._process.stdout.close()
 
-    def lines(self) -> Iterator[str]:
-        """Yield the output line by line, as it comes; kill the group at the deadline or above the memory limit."""
+    def lines(self, look: Callable[[], None] | None = None) -> Iterator[str]:
+        """Yield the output line by line, as it comes; stop at the deadline or above the memory limit.
+
+        It ends with the engine too, whoever else still holds its output open.
+
+        Args:
+            look: called every now and then, for what the engine leaves elsewhere.
+        """
         assert self._process.stdout is not None
         descriptor = self._process.stdout.fileno()
         rest = b""
@@ -135,7 +141,12 @@ class EngineProcess:
                     if self._group_memory() > self._memory:
                         self.out_of_memory = True
                         break
-                if not selector.select(min(_WATCH_SECONDS, self._deadline - now)):
+                    if look is not None:
+                        look()
+                ended = self._process.poll() is not None
+                if not selector.select(0 if ended else min(_WATCH_SECONDS, self._deadline - now)):
+                    if ended:
+                        break
                     continue
                 chunk = os.read(descriptor, 1 << 16)
                 if not chunk:
