@@ -84,6 +84,11 @@ class UnknownEncoding(SmashError):
         super().__init__(f"no encoding is called {name!r}; known: {', '.join(known)}")
 
 
+def action_names(domain_text: str) -> frozenset[str]:
+    """Return the names of a domain's actions."""
+    return frozenset(re.findall(r"\(\s*:action\s+([^\s()]+)", domain_text.lower()))
+
+
 def _filed(file: str) -> str:
     return (DOMAINS / f"{file}.pddl").read_text(encoding="utf-8")
 

@@ -16,13 +16,13 @@ from typing import ClassVar
 
 from smash.planners.protocol import OnIncumbent, ProblemPlanner, Settings
 from smash.problem.errors import IllegalAction, SmashError, Unsupported
-from smash.problem.plan import Plan
+from smash.problem.plan import Plan, Status
 from smash.problem.problem import Problem
-from smash_baselines.encodings import COMPOSED, NO_COSTS, get_encoding, unsupported_reason
+from smash_baselines.encodings import COMPOSED, NO_COSTS, action_names, get_encoding, unsupported_reason
 from smash_baselines.engine import EnginePlanner, Run
 from smash_baselines.engines.command_line import DOMAIN, PLAN, PROBLEM, CommandLine
 from smash_baselines.engines.outcomes import BUDGET_SPENT, EXITS, MEMORY_SPENT, Outcome
-from smash_baselines.engines.plan_text import action_names, plans_in, steps_in
+from smash_baselines.engines.plan_text import plans_in, steps_in
 from smash_baselines.engines.process import EngineProcess
 from smash_baselines.names import Step
 from smash_baselines.parts.registry import TOLD
@@ -55,7 +55,7 @@ class CommandPlanner(ProblemPlanner):
         missing = _line(settings).missing()
         if missing is not None:
             raise Unsupported(f"planner {NAME!r} is not installed: {missing}")
-        return unsupported_reason(_asked(problem, settings), _encoding(settings))
+        return CommandEngine(_line(settings), _encoding(settings)).refuses(problem, settings)
 
     def plan(
         self, problem: Problem, settings: Settings, budget: float, on_incumbent: OnIncumbent | None = None
@@ -69,14 +69,7 @@ class CommandPlanner(ProblemPlanner):
             on_incumbent: called with every better plan.
         """
         engine = CommandEngine(_line(settings), _encoding(settings))
-        answer = engine.plan(_asked(problem, settings), settings, budget, on_incumbent)
-        return replace(at_most_feasible(answer), options=problem.options)
-
-
-def at_most_feasible(answer: Plan) -> Plan:
-    """Return an answer without what it claims of costs."""
-    status = "feasible" if answer.status == "optimal" else answer.status
-    return replace(answer, status=status, lower_bound=None, bound_origin=None)
+        return engine.plan(problem, settings, budget, on_incumbent)
 
 
 def check_command(command: str, encoding: str | None) -> None:
@@ -105,15 +98,11 @@ def _encoding(settings: Settings) -> str:
     return settings.encoding or COMPOSED
 
 
-def _asked(problem: Problem, settings: Settings) -> Problem:
-    """Return what the program is asked: in the encoding that knows no topple, a problem without."""
-    if _encoding(settings) != NO_COSTS or not problem.options.topple or not problem.plain:
-        return problem
-    return Problem(problem.instance, replace(problem.options, topple=False, max_topple=None))
-
-
 class CommandEngine(EnginePlanner):
-    """One program on one encoding."""
+    """One program on one encoding; its answer is at most `feasible`.
+
+    On the encoding that knows no topple it plans without, also where plans may topple.
+    """
 
     name = NAME
 
@@ -125,15 +114,44 @@ class CommandEngine(EnginePlanner):
             encoding: what it is handed.
         """
         super().__init__(UNLIMITED)
-        self._line = line
+        self._command_line = line
         self.encoding = encoding
+
+    def refuses(self, problem: Problem, settings: Settings) -> str | None:
+        """Return why the encoding cannot say the problem, or None."""
+        return unsupported_reason(self._asked(problem), self.encoding)
+
+    def plan(
+        self, problem: Problem, settings: Settings, budget: float, on_incumbent: OnIncumbent | None = None
+    ) -> Plan:
+        """Run the program for at most `budget` seconds.
+
+        Args:
+            problem: what to plan.
+            settings: nothing of them means anything to it.
+            budget: seconds of wall time.
+            on_incumbent: called with every better plan.
+        """
+        answer = super().plan(self._asked(problem), settings, budget, on_incumbent)
+        status: Status = "feasible" if answer.status == "optimal" else answer.status
+        return replace(answer, status=status, lower_bound=None, bound_origin=None, options=problem.options)
+
+    def _asked(self, problem: Problem) -> Problem:
+        """Return what the program is asked: in the encoding that knows no topple, a problem without."""
+        if self.encoding != NO_COSTS or not problem.options.topple or not problem.plain:
+            return problem
+        return Problem(problem.instance, replace(problem.options, topple=False, max_topple=None))
 
     def run(self, run: Run) -> Outcome:
         """Run the program and take its plans as they come."""
         domain, problem = run.task.write(run.directory)
         plan = run.directory / PLAN_FILE
-        command = self._line.filled({DOMAIN: domain, PROBLEM: problem, PLAN: plan})
-        names = [PLAN_FILE] if self._line.writes_plan else [name.format(problem=problem.name) for name in SELF_NAMED]
+        command = self._command_line.filled({DOMAIN: domain, PROBLEM: problem, PLAN: plan})
+        names = (
+            [PLAN_FILE]
+            if self._command_line.writes_plan
+            else [name.format(problem=problem.name) for name in SELF_NAMED]
+        )
         plans = _Plans(run, names)
         with EngineProcess(
             command,
@@ -143,7 +161,7 @@ class CommandEngine(EnginePlanner):
             limit_address_space=False,
         ) as program:
             try:
-                if self._line.writes_plan:
+                if self._command_line.writes_plan:
                     for _ in program.lines(plans.look):
                         continue
                 else:
@@ -211,6 +229,7 @@ class _Plans:
 
     def printed(self, steps: list[Step]) -> None:
         """Take a plan that was printed, unless the program writes files."""
+        self.look()
         doubt = None if self._seen else self._take(steps, None)
         if doubt is not None:
             self._printed.append(doubt)

@@ -14,11 +14,6 @@ _WITH_COST = re.compile(r"([^()\[\]]+?)\s*\(\d+\)")
 """`pick b02 b01 (1)`, as the log of Fast Downward has it."""
 
 
-def action_names(domain_text: str) -> frozenset[str]:
-    """Return the names of a domain's actions."""
-    return frozenset(re.findall(r"\(\s*:action\s+([^\s()]+)", domain_text.lower()))
-
-
 def step_in(line: str, actions: Collection[str], *, bare: bool = False) -> Step | None:
     """Return the step that a line says, or None.
 
