@@ -15,7 +15,7 @@ from smash.problem.model import Instance, PlanOptions
 from smash.problem.problem import Problem
 from smash_baselines.domains import DOMAINS
 from smash_baselines.goal_words import judged_text, told, words_of
-from smash_baselines.parts.domain import domain_name, domain_text
+from smash_baselines.parts.domain import domain_name, domain_text, text_without_costs
 from smash_baselines.parts.part import Part
 from smash_baselines.parts.registry import parts_of
 
@@ -42,6 +42,7 @@ class Encoding:
         with_cap: the encoding that takes its place where `max_topple` binds; None: it cannot say that.
         parts: of a domain of `smash_baselines.parts`, what it is put together from; they say facts and steps.
         judged: whether it can say the words of a goal that hold in several ways (`smash_baselines.goal_words`).
+        costs: whether actions have costs, and a problem minimises them.
     """
 
     name: str
@@ -54,11 +55,19 @@ class Encoding:
     with_cap: Encoding | None = None
     parts: tuple[Part, ...] = ()
     judged: bool = False
+    costs: bool = True
 
     def with_words(self) -> Encoding:
         """Return this encoding with the words of goals that hold in several ways."""
         text = judged_text(self.text, self.domain, regions=self.chain or bool(self.parts))
+        text = text if self.costs else text_without_costs(text)
         return replace(self, name=f"{self.name}-words", domain=f"{self.domain}-words", text=text, judged=True)
+
+    def without_costs(self) -> Encoding:
+        """Return this encoding for planners that know no costs: plans are as short as they are cheap."""
+        name, domain = f"{self.name}-no-costs", f"{self.domain}-no-costs"
+        text = text_without_costs(self.text).replace(f"(domain {self.domain})", f"(domain {domain})", 1)
+        return replace(self, name=name, domain=domain, text=text, costs=False)
 
     @property
     def conditional_effects(self) -> bool:
@@ -75,11 +84,17 @@ class UnknownEncoding(SmashError):
         super().__init__(f"no encoding is called {name!r}; known: {', '.join(known)}")
 
 
+def action_names(domain_text: str) -> frozenset[str]:
+    """Return the names of a domain's actions."""
+    return frozenset(re.findall(r"\(\s*:action\s+([^\s()]+)", domain_text.lower()))
+
+
 def _filed(file: str) -> str:
     return (DOMAINS / f"{file}.pddl").read_text(encoding="utf-8")
 
 
 PICK_AND_PLACE = Encoding("pick-and-place", "smash-pick-and-place", _filed("pick-and-place"), topple=False)
+PICK_AND_PLACE_NO_COSTS = PICK_AND_PLACE.without_costs()
 CONDITIONAL = Encoding("topple-conditional", "smash-topple-conditional", _filed("topple-conditional"), closure=True)
 CHAIN_CAPPED = Encoding(
     "topple-chain-capped", "smash-topple-chain-capped", _filed("topple-chain-capped"), chain=True, capped=True
@@ -92,10 +107,16 @@ ENCODINGS = {
     "chain": CHAIN,
     "chain-capped": CHAIN_CAPPED,
 }
-BY_DOMAIN = {encoding.domain: encoding for plain in ENCODINGS.values() for encoding in (plain, plain.with_words())}
+BY_DOMAIN = {
+    encoding.domain: encoding
+    for plain in (*ENCODINGS.values(), PICK_AND_PLACE_NO_COSTS)
+    for encoding in (plain, plain.with_words())
+}
 """Every domain that is read back, by its PDDL name."""
 TOPPLE_ENCODINGS = ("conditional", "chain")
 """The two ways of this package to tell a topple: one action with conditional effects, or a chain of STRIPS actions."""
+NO_COSTS = "pick-and-place"
+"""The way for planners that know neither costs nor a topple; the engines of this package have no use for it."""
 COMPOSED = "chain"
 """The way in which further aggregating actions and costs can be told."""
 
@@ -106,17 +127,19 @@ def encoding_names() -> list[str]:
 
 
 def get_encoding(name: str) -> Encoding:
-    """Return the way to tell topples that is called `name`.
+    """Return the way to tell topples that is called `name`, or the one that tells none.
 
     Raises:
         UnknownEncoding: where none is called so.
         Unsupported: where its module cannot be loaded, or holds no `Encoding`.
     """
+    if name == NO_COSTS:
+        return PICK_AND_PLACE_NO_COSTS
     if name in TOPPLE_ENCODINGS:
         return ENCODINGS[name]
     entries = entry_points_of(GROUP).select(name=name)
     if not entries:
-        raise UnknownEncoding(name, encoding_names())
+        raise UnknownEncoding(name, [*encoding_names(), NO_COSTS])
     try:
         encoding = next(iter(entries)).load()
     except (ImportError, AttributeError) as error:
@@ -147,6 +170,8 @@ def unsupported_reason(problem: Problem, wanted: str) -> str | None:
         UnknownEncoding: where none is called so.
     """
     cap = cap_of(problem.instance, problem.options)
+    if wanted == NO_COSTS and problem.plain and problem.options.topple:
+        return f"the {wanted} encoding has no topple (`--no-topple` leaves that out)"
     if not problem.plain:
         get_encoding(wanted)
         return (
@@ -176,6 +201,8 @@ def encoding_for(problem: Problem, wanted: str) -> Encoding:
     encoding = get_encoding(wanted)
     if not problem.plain:
         encoding = family_encoding(instance, options)
+    elif wanted == NO_COSTS:
+        encoding = PICK_AND_PLACE_NO_COSTS
     elif not options.topple:
         encoding = PICK_AND_PLACE
     elif cap_of(instance, options) is not None:

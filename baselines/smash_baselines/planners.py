@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from smash_baselines.engines.aries import AriesPlanner
+from smash_baselines.engines.command import CommandPlanner
 from smash_baselines.engines.configurations import IPDB, LAMA, LAMA_FIRST, LMCUT, SYMBOLIC
 from smash_baselines.engines.downward import DownwardPlanner
 from smash_baselines.engines.enhsp import EnhspPlanner
 
 __all__ = [
     "Aries",
+    "CommandPlanner",
     "Enhsp",
     "FdLama",
     "FdLamaChain",

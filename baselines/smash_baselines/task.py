@@ -43,19 +43,21 @@ class PddlTask:
     def problem_text(self) -> str:
         """The problem."""
         objects = [f"    {' '.join(members)} - {kind}" for kind, members in self.facts.objects.items() if members]
+        costs = self.encoding.costs
         lines = [
             HEADER + json.dumps(_header(self)),
             "(define (problem smash)",
             f"  (:domain {self.encoding.domain})",
             "  (:objects\n" + "\n".join(objects) + ")",
-            "  (:init\n    (= (total-cost) 0)\n"
+            "  (:init\n"
+            + ("    (= (total-cost) 0)\n" if costs else "")
             + "".join(_cost_lines(self.facts))
             + _fact_lines(self.facts.start)
             + ")",
             "  (:goal (and\n" + _fact_lines(self.facts.goal) + "))",
-            "  (:metric minimize (total-cost)))",
+            *(["  (:metric minimize (total-cost))"] if costs else []),
         ]
-        return "\n".join(lines) + "\n"
+        return "\n".join(lines) + ")\n"
 
     def write(self, directory: Path) -> tuple[Path, Path]:
         """Write `domain.pddl` and `problem.pddl` into an existing directory and return their paths."""

@@ -4,37 +4,57 @@
     get_environment().factory.add_engine("smash", "smash_baselines.up_engine", "SmashEngine")
     result = OneshotPlanner(name="smash").solve(problem)
 
-`problem` is of one of our domains; anything else is answered by `UNSUPPORTED_PROBLEM`.
+`problem` is of one of our domains, or a classical blocks world with a hand; anything else is answered by
+`UNSUPPORTED_PROBLEM`.
 """
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Iterator, Sequence
-from queue import SimpleQueue
+import json
+import math
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from time import monotonic
 from typing import IO, Any
 
-from unified_planning.engines import AnytimeGuarantee, Credits, Engine, OptimalityGuarantee
+from unified_planning.engines import (
+    AnytimeGuarantee,
+    Credits,
+    Engine,
+    OptimalityGuarantee,
+    SequentialPlanValidator,
+)
 from unified_planning.engines.mixins import AnytimePlannerMixin, OneshotPlannerMixin
 from unified_planning.engines.results import (
     LogLevel,
     LogMessage,
     PlanGenerationResult,
     PlanGenerationResultStatus,
+    ValidationResultStatus,
 )
+from unified_planning.exceptions import UPUsageError
 from unified_planning.model import AbstractProblem, Problem, ProblemKind
 
-from smash.planners.protocol import OnIncumbent, Settings, ask, why_refused
-from smash.planners.registry import DEFAULT, get_planner
-from smash.problem.errors import MalformedFile, SmashError, Unsupported
+from smash.planners.registry import DEFAULT
+from smash.problem.errors import IllegalAction, MalformedFile, Unsupported
+from smash.problem.files.documents import write_text
+from smash.problem.files.plans import action_from_list, plan_from_document
 from smash.problem.model import Action
 from smash.problem.plan import Plan
 from smash.problem.problem import Problem as SmashProblem
-from smash_baselines.read_problem import ReadProblem
-from smash_baselines.read_up import read_up_problem
-from smash_baselines.steps import steps_of
+from smash_baselines.engines.process import EngineProcess
+from smash_baselines.read_up import Reading, reading_of
+from smash_baselines.up_classical import Classical
 from smash_baselines.up_problem import up_plan
+from smash_baselines.up_solver import JOB, job_document
 
+NAME = "smash"
+START_SECONDS = 120.0
+"""Seconds that the solver has to load what it needs, before its clock starts."""
 DEFAULT_BUDGET = 30.0
 """Seconds that a call without a timeout may take."""
 
@@ -47,7 +67,7 @@ _STATUS = {
 
 
 class SmashEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin):  # type: ignore[misc]
-    """Solves problems of our domains with a planner of the registry.
+    """Solves problems of our domains and of classical blocks worlds with a planner of the registry.
 
     Args:
         planner: its name; an engine parameter, `OneshotPlanner(name="smash", params={"planner": "precedence"})`.
@@ -62,11 +82,11 @@ class SmashEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin):  # type: ig
     @property
     def name(self) -> str:
         """The engine's name."""
-        return "smash"
+        return NAME
 
     @staticmethod
     def supported_kind() -> ProblemKind:
-        """Return the features of our domains."""
+        """Return the features of our domains and of blocks worlds, with costs, with a length, and without a metric."""
         kind = ProblemKind(version=2)
         kind.set_problem_class("ACTION_BASED")
         kind.set_typing("FLAT_TYPING")
@@ -74,6 +94,11 @@ class SmashEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin):  # type: ig
         kind.set_effects_kind("CONDITIONAL_EFFECTS")
         kind.set_effects_kind("FORALL_EFFECTS")
         kind.set_quality_metrics("ACTIONS_COST")
+        kind.set_quality_metrics("PLAN_LENGTH")
+        kind.set_problem_type("SIMPLE_NUMERIC_PLANNING")
+        kind.set_fluents_type("REAL_FLUENTS")
+        kind.set_fluents_type("INT_FLUENTS")
+        kind.set_effects_kind("INCREASE_EFFECTS")
         kind.set_actions_cost_kind("INT_NUMBERS_IN_ACTIONS_COST")
         return kind
 
@@ -121,55 +146,116 @@ class SmashEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin):  # type: ig
         timeout: float | None = None,
         output_stream: IO[str] | None = None,
     ) -> Iterator[PlanGenerationResult]:
-        """Yield each better plan at once, and the final answer with what is proven last."""
-        try:
-            read = read_up_problem(problem)
-        except (Unsupported, MalformedFile) as error:
-            yield self._failed(PlanGenerationResultStatus.UNSUPPORTED_PROBLEM, error)
-            return
-        heard: SimpleQueue[Sequence[Action] | Plan | Exception] = SimpleQueue()
+        """Yield each better plan at once, and the final answer with what is proven last; closed, it stops the solver.
+
+        Raises:
+            UPUsageError: where the timeout is no span of time.
+        """
         budget = DEFAULT_BUDGET if timeout is None else timeout
-        threading.Thread(target=self._run, args=(read, budget, heard), daemon=True).start()
-        while True:
-            news = heard.get()
-            if isinstance(news, Plan):
-                yield self._final(news, read, problem)
-                return
-            if isinstance(news, Exception):
-                yield self._failed(_status_of(news), news)
-                return
-            yield self._intermediate(news, read, problem)
-
-    def _run(self, read: ReadProblem, budget: float, heard: SimpleQueue[Any]) -> None:
-        asked, settings = SmashProblem(read.instance, read.options), Settings()
-        report: OnIncumbent = lambda _seconds, _cost, actions: heard.put(tuple(actions))  # noqa: E731
+        if not 0 < budget < math.inf:
+            raise UPUsageError(f"timeout: {timeout!r} is not allowed; seconds above 0")
         try:
-            planner = get_planner(self._planner)
-            reason = why_refused(planner, asked, settings)
-            if reason:
-                raise Unsupported(reason)
-            heard.put(ask(planner, asked, settings, budget, report, name=self._planner))
-        except Exception as error:  # whatever ends the thread must reach the caller, who waits for it
-            heard.put(error)
-
-    def _intermediate(self, actions: Sequence[Action], read: ReadProblem, problem: Problem) -> PlanGenerationResult:
-        plan = up_plan(steps_of(actions, read.task), problem)
-        return PlanGenerationResult(PlanGenerationResultStatus.INTERMEDIATE, plan, self.name)
-
-    def _final(self, result: Plan, read: ReadProblem, problem: Problem) -> PlanGenerationResult:
-        plan = None if result.actions is None else up_plan(steps_of(result.actions, read.task), problem)
-        metrics = {"planner": self._planner}
-        if result.lower_bound is not None:
-            metrics |= {"lower_bound": str(result.lower_bound), "bound_origin": str(result.bound_origin)}
-        return PlanGenerationResult(_STATUS[result.status], plan, self.name, metrics)
-
-    def _failed(self, status: PlanGenerationResultStatus, error: Exception) -> PlanGenerationResult:
-        return PlanGenerationResult(status, None, self.name, log_messages=[LogMessage(LogLevel.ERROR, str(error))])
+            answers = _Answers(reading_of(problem), problem, self._planner)
+        except (Unsupported, MalformedFile) as error:
+            yield _failed(PlanGenerationResultStatus.UNSUPPORTED_PROBLEM, str(error))
+            return
+        yield from answers.until(budget)
 
 
-def _status_of(error: Exception) -> PlanGenerationResultStatus:
-    if isinstance(error, Unsupported):
-        return PlanGenerationResultStatus.UNSUPPORTED_PROBLEM
-    if not isinstance(error, SmashError):
-        raise error
-    return PlanGenerationResultStatus.INTERNAL_ERROR
+@dataclass(slots=True)
+class _Answers:
+    """The results of one problem, as a process of its own finds them; the library's validator judges every plan."""
+
+    reading: Reading
+    problem: Problem
+    planner: str
+
+    def until(self, budget: float) -> Iterator[PlanGenerationResult]:
+        """Yield results until the last, or until nothing is to be expected any more."""
+        asked = SmashProblem(self.reading.instance, self.reading.options)
+        with tempfile.TemporaryDirectory(prefix="smash-", ignore_cleanup_errors=True) as folder:
+            write_text(Path(folder) / JOB, json.dumps(job_document(asked, self.planner, budget)))
+            with EngineProcess(
+                [sys.executable, "-W", "ignore", "-m", "smash_baselines.up_solver"],
+                directory=Path(folder),
+                deadline=monotonic() + START_SECONDS,
+                memory=sys.maxsize,
+                limit_address_space=False,
+                environment={"PYTHONPATH": os.pathsep.join(map(os.path.abspath, sys.path))},
+            ) as solver:
+                for line in solver.lines():
+                    words = _words(line)
+                    if "ready" in words:
+                        solver.deadline = monotonic() + budget + max(0.05 * budget, 0.5)
+                    elif "actions" in words:
+                        found = self._intermediate(words["actions"])
+                        if found.plan is not None:
+                            yield found
+                    elif words:
+                        yield self._last(words)
+                        return
+                code = solver.returncode()
+        yield self._silent(code, solver)
+
+    def _intermediate(self, listed: Sequence[Any]) -> PlanGenerationResult:
+        actions = [action_from_list(entry, "plan") for entry in listed]
+        return self._checked(PlanGenerationResultStatus.INTERMEDIATE, actions, {})
+
+    def _last(self, words: Mapping[str, Any]) -> PlanGenerationResult:
+        if "failed" in words:
+            unsupported = words["failed"] == "unsupported"
+            status = PlanGenerationResultStatus
+            return _failed(status.UNSUPPORTED_PROBLEM if unsupported else status.INTERNAL_ERROR, words["reason"])
+        answer = plan_from_document(words["end"], "plan")
+        metrics = {"planner": self.planner}
+        if answer.lower_bound is not None:
+            metrics |= {"lower_bound": str(self._bound(answer)), "bound_origin": str(answer.bound_origin)}
+        if answer.actions is None:
+            return PlanGenerationResult(_STATUS[answer.status], None, NAME, metrics)
+        actions: Sequence[Action] = answer.actions
+        status = _STATUS[answer.status]
+        if isinstance(self.reading, Classical):
+            actions = self.reading.shortened(actions)
+            unsure = len(actions) == len(answer.actions) and self.reading.may_end_full
+        else:
+            unsure = not self.reading.exact
+        if unsure and status == PlanGenerationResultStatus.SOLVED_OPTIMALLY:
+            status = PlanGenerationResultStatus.SOLVED_SATISFICING
+        return self._checked(status, actions, metrics)
+
+    def _bound(self, answer: Plan) -> int:
+        """Return the lower bound of a problem whose plans may end with a full hand: one step less."""
+        assert answer.lower_bound is not None
+        full = isinstance(self.reading, Classical) and not self.reading.keeps_hand
+        return max(0, answer.lower_bound - 1) if full else answer.lower_bound
+
+    def _checked(
+        self, status: PlanGenerationResultStatus, actions: Sequence[Action], metrics: dict[str, str]
+    ) -> PlanGenerationResult:
+        wrong = PlanGenerationResultStatus.INTERNAL_ERROR
+        try:
+            plan = up_plan(self.reading.steps(actions), self.problem)
+        except IllegalAction as error:
+            return _failed(wrong, f"the law refuses the plan: {error}")
+        verdict = SequentialPlanValidator().validate(self.problem, plan)
+        if verdict.status != ValidationResultStatus.VALID:
+            return _failed(wrong, f"the library's validator refuses the plan: {verdict}")
+        return PlanGenerationResult(status, plan, NAME, metrics)
+
+    def _silent(self, code: int | None, solver: EngineProcess) -> PlanGenerationResult:
+        if solver.timed_out:
+            return _failed(PlanGenerationResultStatus.TIMEOUT, "stopped: it did not end in time")
+        words = next((line.strip() for line in reversed(solver.tail) if line.strip()), "no word")
+        return _failed(PlanGenerationResultStatus.INTERNAL_ERROR, f"the solver ended with exit code {code}: {words}")
+
+
+def _failed(status: PlanGenerationResultStatus, words: str) -> PlanGenerationResult:
+    return PlanGenerationResult(status, None, NAME, log_messages=[LogMessage(LogLevel.ERROR, words)])
+
+
+def _words(line: str) -> dict[str, Any]:
+    try:
+        words = json.loads(line)
+    except ValueError:  # what a planner prints
+        return {}
+    return words if isinstance(words, dict) else {}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import isnan
 from typing import Any
 
@@ -15,6 +16,51 @@ without_option = click.option(
     multiple=True,
     help="An aggregating action of the instance that plans may not use; may be given twice.",
 )
+
+
+command_option = click.option(
+    "--command",
+    "command_line",
+    metavar="'PROGRAM …'",
+    help="Any PDDL planner in place of --planner: 'PLANNER {domain} {problem} {plan}', without a shell.",
+)
+encoding_option = click.option(
+    "--encoding",
+    metavar="NAME",
+    help="What a --command is handed: `chain` (the default), `conditional`, `pick-and-place` (no topple, no costs).",
+)
+
+
+def check_command(command: str | None, encoding: str | None) -> None:
+    """Refuse a program's command line or encoding that is none.
+
+    Raises:
+        SmashError: with one line; an encoding without a program is wrong too.
+    """
+    if command is None:
+        if encoding is not None:
+            raise click.UsageError("--encoding goes with --command; a planner on another encoding is `NAME:ENCODING`")
+        return
+    from smash_baselines.engines.command import check_command as check
+
+    check(command, encoding)
+
+
+def named_commands(given: Iterable[str]) -> dict[str, str]:
+    """Return command lines by name, from `NAME='PROGRAM …'`.
+
+    Raises:
+        UsageError: where a name or a program is missing, or a name stands twice.
+    """
+    named: dict[str, str] = {}
+    for word in given:
+        name, _, line = word.partition("=")
+        if not name.strip() or not line.strip():
+            raise click.UsageError(f"--command {word!r}: NAME='PROGRAM …' is wanted")
+        if name in named:
+            raise click.UsageError(f"--command: {name!r} stands twice")
+        named[name] = line
+    return named
 
 
 class _Seconds(click.FloatRange):

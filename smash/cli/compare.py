@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from smash.cli.choices import encoding_option, named_commands
 from smash.cli.sweep import installed_runs, run_all
 from smash.experiments.comparison import comparison_of
 from smash.experiments.isolation.job import DEFAULT_MEMORY
@@ -23,7 +24,15 @@ SHORT = {"first plan [s]": "first [s]", "best plan [s]": "best [s]", "cost, solv
 
 @click.command("compare")
 @click.argument("suites", metavar="SUITE…", nargs=-1, required=True)
-@click.option("--planner", "planners", multiple=True, required=True, metavar="NAME", help="May stand several times.")
+@click.option("--planner", "planners", multiple=True, metavar="NAME", help="May stand several times.")
+@click.option(
+    "--command",
+    "commands",
+    multiple=True,
+    metavar="NAME='PROGRAM …'",
+    help="Any PDDL planner: NAME='PLANNER {domain} {problem} {plan}', without a shell. May stand several times.",
+)
+@encoding_option
 @click.option("--budget", type=float, default=30.0, show_default=True, metavar="SECONDS", help="Wall time of a run.")
 @click.option("--buffers", type=int, multiple=True, metavar="B", help="Buffer counts (default: as filed).")
 @click.option("--variant", "variants", multiple=True, metavar="V", help="topple, no-topple, max-topple-M.")
@@ -36,6 +45,8 @@ SHORT = {"first plan [s]": "first [s]", "best plan [s]": "best [s]", "cost, solv
 def command(
     suites: tuple[str, ...],
     planners: tuple[str, ...],
+    commands: tuple[str, ...],
+    encoding: str | None,
     budget: float,
     buffers: tuple[int, ...],
     variants: tuple[str, ...],
@@ -52,9 +63,16 @@ def command(
     other comparisons that stand there are kept and left out of the tables.
 
     \b
-    Example:
+    Examples:
       smash compare multi-4 multi-9 --planner smash --planner smash-layered --planner fd-lama --jobs 2
+      smash compare multi-4 --planner smash --command pyperplan='pyperplan {domain} {problem}' \\
+        --encoding pick-and-place
     """
+    if not planners and not commands:
+        raise click.UsageError("Missing option '--planner' or '--command'.")
+    if encoding is not None and not commands:
+        raise click.UsageError("--encoding goes with --command; a planner on another encoding is `NAME:ENCODING`")
+    programs = named_commands(commands)
     require("smash compare", *TABLES)
     from smash_analysis import comparison
 
@@ -62,6 +80,8 @@ def command(
     experiment = comparison_of(
         suites,
         planners,
+        programs=programs,
+        encoding=encoding,
         budget=budget,
         variants=variants or ("topple", "no-topple"),
         buffers=buffers,

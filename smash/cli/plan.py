@@ -11,13 +11,13 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
-from smash.cli.choices import SECONDS, without_option
+from smash.cli.choices import SECONDS, check_command, command_option, encoding_option, without_option
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import DEFAULT_MEMORY, Job, Report
 from smash.experiments.planning import failure
 from smash.planners.protocol import MOST_THREADS, OnIncumbent, Settings
-from smash.planners.registry import DEFAULT, why_unknown
+from smash.planners.registry import COMMAND, DEFAULT, why_unknown
 from smash.problem.errors import SmashError
 from smash.problem.files.documents import require_writable, write_text
 from smash.problem.files.instances import read_instance
@@ -28,7 +28,9 @@ from smash.problem.problem import Problem
 
 @click.command("plan")
 @click.argument("instance", type=click.Path(path_type=Path))
-@click.option("--planner", default=DEFAULT, show_default=True, metavar="NAME", help="See `smash planners`.")
+@click.option("--planner", show_default=DEFAULT, metavar="NAME", help="See `smash planners`.")
+@command_option
+@encoding_option
 @click.option("--no-topple", is_flag=True, help="Pick and place only.")
 @click.option("--max-topple", type=click.IntRange(min=1), metavar="M", help="At most M blocks in one topple.")
 @click.option(
@@ -60,7 +62,9 @@ from smash.problem.problem import Problem
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Write the plan here (default: print).")
 def command(
     instance: Path,
-    planner: str,
+    planner: str | None,
+    command_line: str | None,
+    encoding: str | None,
     no_topple: bool,
     max_topple: int | None,
     estimates: Path | None,
@@ -82,14 +86,20 @@ def command(
       smash plan examples/figure1.json
       smash plan examples/figure1.json --no-topple --planner precedence --out plan.json
       smash plan examples/figure1.json --estimates runs/topple-map/estimates.json
+      smash plan examples/figure1.json --command 'pyperplan -s gbf {domain} {problem}' --encoding pick-and-place
     """
+    if planner is not None and command_line is not None:
+        raise click.UsageError("--planner and --command exclude each other")
+    check_command(command_line, encoding)
+    planner = planner or (DEFAULT if command_line is None else COMMAND)
     if estimates is not None:
         max_topple = _trusted(estimates, max_topple)
         no_topple = no_topple or max_topple == 0
     if warm_start is not None and (unknown := why_unknown(warm_start)) is not None:
         raise SmashError(unknown)
     problem = Problem(read_instance(instance), PlanOptions(not no_topple, max_topple or None, without=without))
-    job = Job(planner, problem, Settings(warm_start, horizon, threads, seed), budget, memory)
+    settings = Settings(warm_start, horizon, threads, seed, command_line, encoding)
+    job = Job(planner, problem, settings, budget, memory)
     if math.isnan(budget):
         raise click.BadParameter("nan is no number of seconds", param_hint="--budget")
     require_writable(out)

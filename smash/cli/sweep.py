@@ -68,11 +68,11 @@ def command(
 def installed_runs(experiment: Experiment, base: Path) -> list[Run]:
     """Return the experiment's runs; those of planners that are not installed here are left out, which is said."""
     lacking = not_installed(experiment)
-    runs = experiment_runs(experiment, base)
-    for name, reason in lacking.items():
-        count = sum(run.job.planner == name for run in runs)
+    runs = [((run.job.planner, run.job.settings.command), run) for run in experiment_runs(experiment, base)]
+    for planner, reason in lacking.items():
+        count = sum(mine == planner for mine, _ in runs)
         click.echo(f"{reason}; its {count} runs are left out, start again when it is there", err=True)
-    return [run for run in runs if run.job.planner not in lacking]
+    return [run for planner, run in runs if planner not in lacking]
 
 
 def run_all(runs: list[Run], out: Path, jobs: int, dask: str | None, keep: Callable[[], None]) -> None:

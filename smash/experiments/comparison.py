@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -85,6 +85,8 @@ def comparison_of(
     suites: Sequence[str],
     planners: Iterable[str],
     *,
+    programs: Mapping[str, str] | None = None,
+    encoding: str | None = None,
     budget: float,
     variants: Sequence[str],
     buffers: Sequence[int] = (),
@@ -98,6 +100,8 @@ def comparison_of(
     Args:
         suites: names or directories of sets.
         planners: names of planners.
+        programs: command lines of programs outside, by the names that they are to have.
+        encoding: the PDDL encoding that the programs are handed (None: the chain).
         budget: wall time of each run [s].
         variants: what plans may use.
         buffers: buffer counts (none: as filed).
@@ -112,7 +116,10 @@ def comparison_of(
     experiment = Experiment(
         name="compare",
         suites=list(suites),
-        planners=[PlannerEntry(planner) for planner in planners],
+        planners=[
+            *(PlannerEntry(planner) for planner in planners),
+            *(PlannerEntry(name, command=line, encoding=encoding) for name, line in (programs or {}).items()),
+        ],
         budgets=[budget],
         buffers=list(buffers) or None,
         instances=instances,

@@ -16,6 +16,8 @@ from smash.problem.problem import Problem
 
 GROUP = "smash.planners"
 DEFAULT = "smash"
+COMMAND = "command"
+"""The planner that runs a program outside, which `Settings.command` names."""
 
 
 class UnknownPlanner(SmashError):

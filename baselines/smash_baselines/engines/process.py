@@ -54,6 +54,12 @@ class EngineProcess:
     """One run of an engine: its output by line, until it ends, a deadline passes or it takes too much memory.
 
     A context manager: on leaving, however it is left, the whole process group is killed and reaped.
+
+    Attributes:
+        deadline: when it is killed, on the clock of `time.monotonic` [s]; may be set anew while it runs.
+        timed_out: whether it was killed then.
+        out_of_memory: whether it was killed at its memory limit.
+        tail: its last lines.
     """
 
     def __init__(
@@ -79,7 +85,7 @@ class EngineProcess:
             stdin: file to read from; nothing, where None.
             environment: variables to set beside the caller's.
         """
-        self._deadline = deadline
+        self.deadline = deadline
         self._memory = memory
         self.timed_out = False
         self.out_of_memory = False
@@ -117,8 +123,14 @@ class EngineProcess:
         if self._process.stdout is not None:
             self._process.stdout.close()
 
-    def lines(self) -> Iterator[str]:
-        """Yield the output line by line, as it comes; kill the group at the deadline or above the memory limit."""
+    def lines(self, look: Callable[[], None] | None = None) -> Iterator[str]:
+        """Yield the output line by line, as it comes; stop at the deadline or above the memory limit.
+
+        It ends with the engine too, whoever else still holds its output open.
+
+        Args:
+            look: called every now and then, for what the engine leaves elsewhere.
+        """
         assert self._process.stdout is not None
         descriptor = self._process.stdout.fileno()
         rest = b""
@@ -127,7 +139,7 @@ class EngineProcess:
             selector.register(descriptor, selectors.EVENT_READ)
             while True:
                 now = monotonic()
-                if now >= self._deadline:
+                if now >= self.deadline:
                     self.timed_out = True
                     break
                 if now - watched >= _WATCH_SECONDS:
@@ -135,7 +147,12 @@ class EngineProcess:
                     if self._group_memory() > self._memory:
                         self.out_of_memory = True
                         break
-                if not selector.select(min(_WATCH_SECONDS, self._deadline - now)):
+                    if look is not None:
+                        look()
+                ended = self._process.poll() is not None
+                if not selector.select(0 if ended else min(_WATCH_SECONDS, self.deadline - now)):
+                    if ended:
+                        break
                     continue
                 chunk = os.read(descriptor, 1 << 16)
                 if not chunk:
@@ -151,7 +168,7 @@ class EngineProcess:
             self.kill()
             return None
         try:
-            return self._process.wait(timeout=max(0.1, self._deadline - monotonic()))
+            return self._process.wait(timeout=max(0.1, self.deadline - monotonic()))
         except subprocess.TimeoutExpired:
             self.timed_out = True
             self.kill()

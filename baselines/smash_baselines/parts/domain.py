@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 
 SECTIONS = (":types", ":predicates", ":functions")
@@ -54,6 +55,13 @@ def extended_text(text: str, old: str, new: str, added: str) -> str:
     rest = text[done:].rstrip().removesuffix(")").rstrip()
     actions = added[added.index("; ---") :].rstrip()
     return "".join([*pieces, rest, f"\n\n{actions}\n)\n"]).replace(f"(domain {old})", f"(domain {new})", 1)
+
+
+def text_without_costs(text: str) -> str:
+    """Return the PDDL text of a domain without what it says of costs."""
+    text = re.sub(r"\s*\(increase \(total-cost\) \d+\)", "", text)
+    text = re.sub(r"\s*\(:functions \(total-cost\) - number\)", "", text)
+    return text.replace(" :action-costs", "").replace(" Cost 1.", "")
 
 
 def _forms(text: str) -> Iterator[tuple[int, int]]:

@@ -17,13 +17,14 @@ from pathlib import Path
 from typing import TypeVar, cast
 
 import msgspec
+from smash_baselines.engines.command import check_command, program_missing
 
 from smash.experiments.isolation.job import DEFAULT_MEMORY, Job
 from smash.planners.protocol import MOST_THREADS, Settings, SolveOptions
-from smash.planners.registry import get_planner, why_unknown
+from smash.planners.registry import COMMAND, get_planner, why_unknown
 from smash.problem.actions.registry import FAMILY
 from smash.problem.buffers import with_buffers
-from smash.problem.errors import MalformedFile, Unsupported
+from smash.problem.errors import MalformedFile, SmashError, Unsupported
 from smash.problem.files.documents import convert, parse_toml, read_bytes
 from smash.problem.files.instances import instance_document
 from smash.problem.model import Instance, PlanOptions
@@ -38,25 +39,42 @@ INSTANCES = "instances"
 SETS = "sets.json"
 """`RESULTS/instances/sets.json`: set -> its folder beside the list, in a directory that holds its own experiment."""
 
+_SINCE = frozenset({"command", "encoding"})
+"""Settings that keys of earlier records do not know: they are part of a key where they are given."""
+
 T = TypeVar("T")
 Expect = Callable[[bool, str, str], None]
 """`expect(holds, part, problem)` refuses the file where something does not hold."""
 
 
 class PlannerEntry(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """One `[[planners]]` table: a planner with its settings; the grid's fields may be overridden for it alone."""
+    """One `[[planners]]` table: a planner with its settings; the grid's fields may be overridden for it alone.
+
+    With a `command` the planner is that program, and the name is yours to choose.
+    """
 
     name: str
     label: str | None = None
     warm_start: str | None = None
     horizon: int | None = None
     threads: int = 1
+    command: str | None = None
+    encoding: str | None = None
     suites: list[str] | None = None
     instances: int | None = None
     buffers: list[int] | None = None
     budgets: list[float] | None = None
     variants: list[str] | None = None
     cutoff_sample: int | None = None
+
+    @property
+    def planner(self) -> str:
+        """The registered name of the planner."""
+        return self.name if self.command is None else COMMAND
+
+    def settings(self, seed: int = 0) -> Settings:
+        """Return how it solves."""
+        return Settings(self.warm_start, self.horizon, self.threads, seed, self.command, self.encoding)
 
 
 class Experiment(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
@@ -123,20 +141,34 @@ def check_experiment(experiment: Experiment, where: str = "experiment") -> None:
     expect(experiment.jobs >= 1, "jobs", f"{experiment.jobs} is not allowed; 1 and more")
     _expect_list(expect, "seeds", experiment.seeds, lambda seed: seed >= 0, "0 and more")
     _check_grid(expect, "", experiment)
-    settings: dict[str, tuple[object, ...]] = {}
+    settings: dict[str, tuple[str, Settings]] = {}
     for index, entry in enumerate(experiment.planners):
         part = f"planners[{index}]"
-        for name in filter(None, (entry.name, entry.warm_start)):
+        for name in filter(None, (entry.planner, entry.warm_start)):
             unknown = why_unknown(name)
             expect(unknown is None, part, unknown or "")
+        _check_command(expect, part, entry)
         few = 1 <= entry.threads <= MOST_THREADS
         expect(few, f"{part}.threads", f"{entry.threads} is not allowed; 1 to {MOST_THREADS}")
         expect(entry.horizon is None or entry.horizon >= 1, f"{part}.horizon", f"{entry.horizon} is not allowed")
         _check_grid(expect, f"{part}.", entry)
-        label, chosen = entry.label or entry.name, (entry.name, entry.warm_start, entry.horizon, entry.threads)
+        label, chosen = entry.label or entry.name, (entry.planner, entry.settings())
         expect(bool(label.strip()), f"{part}.label", "empty; a name for the pictures is needed")
         other = settings.setdefault(label, chosen)
         expect(other == chosen, f"{part}.label", f"{label!r} is also the label of other settings; give it another")
+
+
+def _check_command(expect: Expect, part: str, entry: PlannerEntry) -> None:
+    if entry.command is None:
+        whole = entry.encoding is None
+        expect(whole, f"{part}.encoding", "goes with a `command`; a planner on another encoding is `NAME:ENCODING`")
+        return
+    known = entry.name != COMMAND and why_unknown(entry.name) is None
+    expect(not known, f"{part}.name", f"{entry.name!r} is a planner of its own; call the program otherwise")
+    try:
+        check_command(entry.command, entry.encoding)
+    except SmashError as error:
+        expect(False, f"{part}.command", str(error))
 
 
 def _check_grid(expect: Expect, at: str, grid: Experiment | PlannerEntry) -> None:
@@ -198,7 +230,7 @@ def experiment_runs(experiment: Experiment, base: Path = Path()) -> list[Run]:
 def _entry_runs(experiment: Experiment, entry: PlannerEntry, base: Path) -> Iterator[tuple[int, Run]]:
     """Yield (index of the instance in its suite, run) over the grid of one planner."""
     budgets = sorted(entry.budgets or experiment.budgets)
-    kind: RunKind = "budget" if budget_dependent(entry.name) else "anytime"
+    kind: RunKind = "budget" if budget_dependent(entry.planner) else "anytime"
     few = entry.instances or experiment.instances
     counts: list[int | None] = list(entry.buffers or experiment.buffers or []) or [None]
     for suite in entry.suites or experiment.suites:
@@ -210,10 +242,10 @@ def _entry_runs(experiment: Experiment, entry: PlannerEntry, base: Path) -> Iter
                     assert allowed is not None
                     problem = Problem(instance, allowed)
                     for seed in experiment.seeds:
-                        settings = Settings(entry.warm_start, entry.horizon, entry.threads, seed)
+                        settings = entry.settings(seed)
                         for budget in budgets if kind == "budget" else budgets[-1:]:
                             stands_for = (budget,) if kind == "budget" else tuple(budgets)
-                            job = Job(entry.name, problem, settings, float(budget), experiment.memory)
+                            job = Job(entry.planner, problem, settings, float(budget), experiment.memory)
                             yield (
                                 index,
                                 _run(experiment, entry.label or entry.name, suite, variant, kind, stands_for, job),
@@ -236,6 +268,7 @@ def _cutoffs(run: Run) -> Iterator[Run]:
 
 def _key(label: str, suite: str, kind: RunKind, job: Job) -> str:
     asked = asdict(SolveOptions.of(job.options, job.settings))  # in one, as in the keys of earlier records
+    asked = {name: value for name, value in asked.items() if value is not None or name not in _SINCE}
     meant = [label, suite, kind, job.planner, asked, job.budget, job.memory]
     return hashlib.sha256(json.dumps([*meant, instance_hash(job.instance)]).encode()).hexdigest()[:20]
 
@@ -245,14 +278,18 @@ def instance_hash(instance: Instance) -> str:
     return hashlib.sha256(json.dumps(instance_document(instance)).encode()).hexdigest()[:16]
 
 
-def not_installed(experiment: Experiment) -> dict[str, str]:
-    """Return which of the experiment's planners cannot run here, and why."""
+def not_installed(experiment: Experiment) -> dict[tuple[str, str | None], str]:
+    """Return which of the experiment's planners and programs cannot run here, and why."""
     lacking = {}
-    for name in dict.fromkeys(entry.name for entry in experiment.planners):
+    for entry in experiment.planners:
+        planner = (entry.planner, entry.command)
         try:
-            get_planner(name)
+            get_planner(entry.planner)
+            missing = None if entry.command is None else program_missing(entry.command)
+            if missing is not None:
+                lacking[planner] = f"{entry.name!r} is not installed: {missing}"
         except Unsupported as error:
-            lacking[name] = str(error)
+            lacking[planner] = str(error)
         except Exception:  # a planner that is broken, not missing: its runs say so
             continue
     return lacking

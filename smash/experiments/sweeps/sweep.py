@@ -75,12 +75,13 @@ def record_of(run: Run, report: Report, started: datetime, load_before: float) -
         cpu_seconds=report.cpu_seconds,
         memory_mib=report.memory_mib,
         details=dict(report.plan.details),
-        log=report.log if report.outcome in ("crashed", "memory", "refused") else "",
+        log=report.log if job.settings.command or report.outcome in ("crashed", "memory", "refused") else "",
         started=started.astimezone(UTC).isoformat(timespec="milliseconds"),
         load_average=(load_before, load()),
         versions=versions(job.planner),
         commit=commit(),
         machine=machine(),
+        command=job.settings.command,
     )
 
 

@@ -19,17 +19,21 @@ class Settings:
         horizon: number of time steps or layers of the time-indexed models, in place of their own choice.
         threads: most threads of a solver.
         seed: for whatever draws at random.
+        command: the command line of a program outside, for the planner `command`.
+        encoding: the PDDL encoding that such a program is handed (None: the planner's choice).
     """
 
     warm_start: str | None = None
     horizon: int | None = None
     threads: int = 1
     seed: int = 0
+    command: str | None = None
+    encoding: str | None = None
 
     @property
     def cold(self) -> Settings:
-        """The same for a planner that starts another one's model: no warm start, no horizon."""
-        return replace(self, warm_start=None, horizon=None)
+        """The same for a planner that starts another one's model: no warm start, no horizon, no command."""
+        return replace(self, warm_start=None, horizon=None, command=None, encoding=None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +44,8 @@ class SolveOptions(PlanOptions):
     horizon: int | None = None
     threads: int = 1
     seed: int = 0
+    command: str | None = None
+    encoding: str | None = None
 
     @classmethod
     def of(cls, options: PlanOptions, settings: Settings) -> SolveOptions:
@@ -57,4 +63,4 @@ def settings_of(options: PlanOptions) -> Settings:
     """Return the settings that come with plan options; the defaults where none do."""
     if not isinstance(options, SolveOptions):
         return Settings()
-    return Settings(options.warm_start, options.horizon, options.threads, options.seed)
+    return Settings(**{field.name: getattr(options, field.name) for field in fields(Settings)})
