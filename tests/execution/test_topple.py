@@ -5,13 +5,13 @@ from hypothesis import strategies as st
 
 from smash.execution.actions.arm_motions import ArmMotions
 from smash.execution.actions.topple import (
-    HEAP,
     MOST_CUT,
     MOST_SWEPT,
     PUSH_MARGIN,
     RUN_UP,
     directions,
     first_cut,
+    heap,
     manner,
     pushes_needed,
     topple,
@@ -55,7 +55,7 @@ def test_a_push_meets_the_pile_at_the_speed_that_its_manner_asks_for_as_far_as_t
     moves = [move for move in topple(ArmMotions(scene), READY, slot, pile, height, poses) if isinstance(move, Move)]
     push = next(move for move in moves if move.margin == PUSH_MARGIN and move.ignored)
     over = panda().forward(moves[-1].path.end).position[2] - FINGERTIP_BEYOND_TOOL
-    assert over > HEAP[min(falling, max(HEAP))] * scene.side
+    assert over > heap(falling) * scene.side
     tool = np.array([panda().forward(row).position for row in push.trajectory.sample(1e-3)])
     speeds = np.linalg.norm(np.diff(tool, axis=0), axis=1) / 1e-3
     contact = int(np.searchsorted(np.linalg.norm(tool - tool[0], axis=1), RUN_UP))

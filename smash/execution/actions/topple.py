@@ -43,8 +43,8 @@ LEAD = 0.08
 """Length of the straight descent to a push close to the table [m]."""
 LANDING = {1: (0.23, 0.04), 2: (0.35, 0.05), 3: (0.52, 0.05), 4: (0.52, 0.10), 5: (0.68, 0.11)}
 """Measured: how far along the push and how far aside of it blocks come to rest [m], by the number that fall."""
-HEAP = {1: 1.5, 2: 2.0, 3: 2.0, 4: 3.0}
-"""How high they may lie, in sides of a block; more than 4 as 4."""
+HEAP = {1: 1.5, 5: 2.5}
+"""How high they may lie, in sides of a block, by the least number that fall: measured 1.0, and 2.1 in two pushes."""
 OVER_HEAP = 0.015
 """After a push the fingertips rise to this far above the highest heap [m]: the next motion passes over what fell."""
 
@@ -116,6 +116,11 @@ class Strip:
 def strip(falling: int) -> Strip:
     """The landing strip of a topple of so many blocks."""
     return Strip(*LANDING[min(falling, max(LANDING))])
+
+
+def heap(falling: int) -> float:
+    """How high so many toppled blocks may lie, in sides of a block."""
+    return HEAP[max(least for least in HEAP if least <= falling)]
 
 
 def directions(slot: Slot, falling: int, others: Iterable[BlockPose], side: float) -> list[str]:
@@ -201,7 +206,7 @@ class ToppleMotion(AggregateMotion[Topple]):
         """Return the strips of all directions: which of them a push will take is settled when it is made."""
         slot, fallen = where.slots[action.location], frozenset(kind_of(action).gathered(state, action))
         room = strip(len(fallen))
-        height = HEAP[min(len(fallen), max(HEAP))] * arm.side
+        height = heap(len(fallen)) * arm.side
         return tuple(Area(slot, way, room.length, room.half_width, height, fallen) for way in slot.directions)
 
     def foresee(self, arm: ArmMotions, action: Topple, state: State, where: Geometry) -> None:
@@ -281,7 +286,7 @@ def _rise(arm: ArmMotions, joints: Vector, height: int, falling: int, scene: Sce
 
     Nor where the arm cannot: it then stays where it was, and what is planned from there goes its own way.
     """
-    missing = HEAP[min(falling, max(HEAP))] * arm.side + OVER_HEAP - (height - 1 + ABOVE_CUT) * arm.side
+    missing = heap(falling) * arm.side + OVER_HEAP - (height - 1 + ABOVE_CUT) * arm.side
     if missing <= 0.0:
         return []
     try:
