@@ -7,7 +7,7 @@ tries a disturbed pick again, and asks for a new plan from the observed state wh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from time import perf_counter
 
@@ -24,8 +24,9 @@ from smash.execution.recovery import Recovery
 from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.start import starting_carriers, starting_poses
 from smash.execution.scene.tabletop import Tabletop
+from smash.execution.watching import Watch, part_of, spoilt
 from smash.motion.robot import READY
-from smash.problem.errors import ExecutionFailure, IllegalAction
+from smash.problem.errors import ExecutionFailure, IllegalAction, Unsupported
 from smash.problem.files.plans import action_from_list, action_list
 from smash.problem.model import Action, Instance, PlanOptions, State
 from smash.problem.plan import Plan
@@ -55,6 +56,10 @@ class Executor:
         gui: Open PyBullet's window.
         on_frame: Called with the world 25 times a simulated second.
         on_step: Called with each action before it is carried out.
+
+    Raises:
+        DoesNotFit: where the scene has no room for the instance.
+        Unsupported: where a block is in the hand at the start.
     """
 
     def __init__(
@@ -70,6 +75,11 @@ class Executor:
         on_frame: Frame | None = None,
         on_step: Callable[[Performed], object] | None = None,
     ) -> None:
+        if instance.hand is not None:
+            raise Unsupported(
+                f"instance {instance.name!r} starts with block {instance.hand!r} in the hand; "
+                "the executor takes an empty hand alone"
+            )
         self.instance = instance
         self.plan = plan
         self.tabletop = tabletop
@@ -99,6 +109,7 @@ class Executor:
             self.performer = Performer(world, self.grounder, self.table, self.policy)
             self.recovery = Recovery(self.instance, self.performer, self._recover)
             world.settle()
+            self.watch = Watch(world.poses())
             failure = self._run_plan()
             return self._episode(failure, self.performer.observe())
 
@@ -131,16 +142,14 @@ class Executor:
     def _perform_all(self, tasks: Sequence[Task], origin: Origin) -> ExecutionFailure | None:
         """Perform tasks until one fails or what is observed makes the rest of the plan senseless."""
         expected = self.performer.observe()
-        rest = [task.action for task in tasks]
-        for task in tasks:
-            rest.pop(0)
+        for number, task in enumerate(tasks, start=1):
             try:
-                self._perform(task, origin, expected, rest)
+                self._perform(task, origin, expected, tasks[number:])
             except ExecutionFailure as failure:
                 return failure
         return None
 
-    def _perform(self, task: Task, origin: Origin, expected: State, rest: Sequence[Action] | None) -> None:
+    def _perform(self, task: Task, origin: Origin, expected: State, rest: Sequence[Task] | None) -> None:
         """Perform one action, move `expected` on to what is observed, and record it.
 
         Args:
@@ -162,13 +171,17 @@ class Executor:
             self._on_step(row)
         row.gap = origin != "recovery" and task.segments is None and task.problem is None
         begun = row.begun = self.world.time
+        part = part_of(task.action, expected)
         try:
-            self.performer.perform(task, row, expected)
+            try:
+                self.performer.perform(task, row, expected)
+            finally:
+                self._note(row, part)
             observed = self._all_on_table()
             self.law.apply(expected, task.action)
             observed.origin = expected.origin
-            if rest is not None and observed.key() != expected.key() and not self._still_good(observed, rest):
-                raise Fell(_difference(expected, observed))
+            if rest is not None:
+                self._require_way_on(row, expected, observed, rest)
             expected.piles, expected.table, expected.hand = observed.piles, observed.table, observed.hand
             expected.carried, expected.stations = observed.carried, observed.stations
         except ExecutionFailure as failure:
@@ -179,6 +192,28 @@ class Executor:
             raise Fell(str(problem)) from None
         finally:
             row.times.execution = self.world.time - begun
+
+    def _note(self, row: Performed, part: Collection[str]) -> None:
+        """Record what an action has moved and touched that it is not about."""
+        row.disturbed |= self.watch.disturbed(self.world.poses(), part)
+        row.touched += [block for block in self.world.touched() if block not in row.touched]
+
+    def _require_way_on(self, row: Performed, expected: State, observed: State, rest: Sequence[Task]) -> None:
+        """Raise where the rest of the plan cannot follow on what an action has left.
+
+        Raises:
+            Fell: where the law does not lead on from there, or (where no motion is looked at again) a block that was
+                disturbed lies in the way of a motion that is planned.
+        """
+        if observed.key() != expected.key() and not self._still_good(observed, [task.action for task in rest]):
+            raise Fell(_difference(expected, observed))
+        if self.policy.repair:
+            return
+        for block, far in row.disturbed.items():
+            spoiled = spoilt(rest, block, self.world.pose(block), self.arm)
+            if spoiled is not None:
+                words = " ".join(map(str, action_list(spoiled.action)))
+                raise Fell(f"block {block!r} was moved by {far * 100:.1f} cm; {words!r} was planned without that")
 
     def _all_on_table(self) -> State:
         """The law's state as observed.
@@ -216,6 +251,8 @@ class Executor:
                 return NotAtGoal(shortfall)
             self.world.wait(JUDGE_WAIT)
             self.world.settle()
+            if self.performed:
+                self._note(self.performed[-1], ())
         return None
 
     def _plan_anew(self) -> list[Task] | None:

@@ -4,6 +4,9 @@ A topple leaves the poses of its blocks unknown (the empty entries of the paper'
 a block becomes a *gap task*: it has no motion yet. The place that follows it is planned as far as it can be: the way
 down to the target, and with it the terminal arm state that the rest of the plan starts from. At execution time the gap
 is bridged: to the revealed pick, from there to the stored place, and back to the promised state.
+
+What happens in or beside a landing strip is a gap task too as long as blocks lie there: they may be in the hand's way.
+So is a task that begins where such a one ends, which nobody knows yet. All other motions pass over the strips.
 """
 
 from __future__ import annotations
@@ -12,6 +15,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from smash.execution.actions.arm_motions import ArmMotions, Segment
+from smash.execution.actions.grasps import CENTRED, Grasp
 from smash.execution.actions.pick_and_place import Approach, PickAndPlace
 from smash.execution.actions.registry import MOTIONS
 from smash.execution.scene.block_pose import BlockPose, standing
@@ -19,11 +23,13 @@ from smash.execution.scene.geometry import Geometry
 from smash.execution.stopwatch import Stopwatch
 from smash.motion.errors import NoMotion
 from smash.motion.move import Move
-from smash.motion.obstacles import Scene
 from smash.motion.poses import Vector
 from smash.problem.errors import ExecutionFailure, Unsupported
-from smash.problem.model import Action, Aggregating, Pick, Place, State
+from smash.problem.model import TABLE, Action, Aggregating, Pick, Place, State
 from smash.problem.rules import Law
+
+HAND_ROOM = 0.08
+"""What is this near to a landing strip, blocks in it may be in the hand's way there [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +44,7 @@ class Task:
         cpu_seconds: The planning thread's time.
         problem: Why planning it failed, if it did; it is then tried again when its turn comes.
         anchor: Where it takes what is taken hold of to be [m], shape (3,); None where that is of no account.
+        grasp: Of a pick: how the hand holds the block afterwards.
     """
 
     action: Action
@@ -47,6 +54,7 @@ class Task:
     cpu_seconds: float = 0.0
     problem: ExecutionFailure | None = None
     anchor: Vector | None = None
+    grasp: Grasp = CENTRED
 
     @property
     def end(self) -> Vector | None:
@@ -81,21 +89,78 @@ class Grounder:
             IllegalAction: at the first action that the law refuses.
         """
         where, tasks = where.seen(where.blocks, where.carriers), []
+        begins: Vector | None = joints
+        last, grasp = joints, CENTRED
         for state, action in zip(law.states(actions), actions, strict=False):
+            where.areas = tuple(area for area in where.areas if not area.blocks.isdisjoint(state.table))
             with Stopwatch() as watch:
-                try:
-                    task = self.task(action, state, where, joints)
-                except ExecutionFailure as failure:
-                    task = Task(action, None, problem=failure)
+                task = self._foreseen(action, state, where, begins, last, grasp)
             tasks.append(replace(task, seconds=watch.wall, cpu_seconds=watch.cpu))
             self._foresee(action, state, where)
-            joints = joints if task.end is None else task.end
+            begins, grasp = task.end, task.grasp
+            last = last if begins is None else begins
         return tasks
 
-    def task(
-        self, action: Action, state: State, where: Geometry, joints: Vector, approach: Approach | None = None
+    def _foreseen(
+        self, action: Action, state: State, where: Geometry, begins: Vector | None, last: Vector, grasp: Grasp
     ) -> Task:
-        """Plan one action as far as the known poses allow; `approach` is the way down that a place has promised.
+        """What can be planned of an action before the episode.
+
+        Args:
+            action: The action.
+            state: The law's state before it.
+            where: The poses that are known then, and where there may be more blocks.
+            begins: Where the arm is then [rad], shape (7,), where that is known.
+            last: Where it was last when that was known [rad], shape (7,).
+            grasp: How it holds the block in the hand.
+        """
+        if self._among_landed(action, where):
+            return Task(action, None)
+        try:
+            if begins is not None:
+                return self.task(action, state, where, begins, grasp=grasp)
+            return self._promise(action, state, where, last, grasp)
+        except ExecutionFailure as failure:
+            return Task(action, None, problem=failure)
+
+    def _promise(self, action: Action, state: State, where: Geometry, last: Vector, grasp: Grasp) -> Task:
+        """Of an action that begins nobody knows where: of a place the way down, of others nothing."""
+        if not isinstance(action, Place):
+            return Task(action, None)
+        stand = self.stand(action.target, state, where)
+        return Task(action, None, self.pick_and_place.landing(last, action.block, stand, self.arm.around(where), grasp))
+
+    @staticmethod
+    def _among_landed(action: Action, where: Geometry) -> bool:
+        """Whether it happens in or beside an area where toppled blocks may be."""
+        match action:
+            case Pick(_, place) | Place(_, place):
+                places: tuple[str, ...] = () if place == TABLE else (place,)
+            case Aggregating() if type(action) in MOTIONS:
+                places = MOTIONS[type(action)].places(action)
+            case _:
+                places = ()
+        points = [where.point(place) for place in places]
+        return any(area.near(x, y, HAND_ROOM) for area in where.areas for x, y in points)
+
+    def task(
+        self,
+        action: Action,
+        state: State,
+        where: Geometry,
+        joints: Vector,
+        approach: Approach | None = None,
+        grasp: Grasp = CENTRED,
+    ) -> Task:
+        """Plan one action as far as the known poses allow.
+
+        Args:
+            action: The action.
+            state: The law's state before it.
+            where: The poses that are known.
+            joints: Where the arm is [rad], shape (7,).
+            approach: The way down that a place has promised.
+            grasp: How the hand holds the block that is placed.
 
         Raises:
             ExecutionFailure: where there is no motion for it.
@@ -104,13 +169,12 @@ class Grounder:
             case Pick(block, _):
                 if block not in where.blocks:
                     return Task(action, None)
-                pose, scene = where.blocks[block], self._scene(where)
-                return Task(action, self.pick_and_place.pick(joints, block, pose, scene), anchor=pose.position)
+                pose, scene = where.blocks[block], self.arm.around(where)
+                segments, grasp = self.pick_and_place.pick(joints, block, pose, scene)
+                return Task(action, segments, anchor=pose.position, grasp=grasp)
             case Place(block, target):
-                scene = self._scene(where)
-                way = approach or self.pick_and_place.landing(joints, block, self.stand(target, state, where), scene)
-                if block not in where.blocks:
-                    return Task(action, None, way)
+                scene, stand = self.arm.around(where), self.stand(target, state, where)
+                way = approach or self.pick_and_place.landing(joints, block, stand, scene, grasp)
                 return Task(action, self.pick_and_place.place(joints, block, way, scene), way)
             case Aggregating():
                 motion = MOTIONS.get(type(action))
@@ -143,13 +207,12 @@ class Grounder:
         slot = where.slots[target]
         return standing(slot.x, slot.y, (len(state.piles[target]) + 0.5) * self.arm.side, slot.angle)
 
-    def _scene(self, where: Geometry) -> Scene:
-        return self.arm.scene(where.blocks, where.carriers)
-
     def _foresee(self, action: Action, state: State, where: Geometry) -> None:
         """Move the known poses on from `state`; a block in the hand keeps its entry: it is known to be held."""
         match action:
             case Place(block, target):
                 where.blocks[block] = self.stand(target, state, where)
             case Aggregating() if type(action) in MOTIONS:
-                MOTIONS[type(action)].foresee(self.arm, action, state, where)
+                motion = MOTIONS[type(action)]
+                where.areas += motion.areas(self.arm, action, state, where)
+                motion.foresee(self.arm, action, state, where)

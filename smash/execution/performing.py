@@ -12,6 +12,7 @@ from math import hypot
 import numpy as np
 
 from smash.execution.actions.arm_motions import OPEN_SECONDS, OPENINGS, Grip, Segment
+from smash.execution.actions.grasps import CENTRED
 from smash.execution.actions.pick_and_place import Approach
 from smash.execution.actions.registry import MOTIONS
 from smash.execution.errors import OutOfReach, Slip
@@ -50,6 +51,7 @@ class Performer:
 
     Attributes:
         hand: The block between the fingers, or none.
+        grasp: How they hold it.
         retries: How many picks were tried again.
     """
 
@@ -60,6 +62,7 @@ class Performer:
         self.policy = policy
         self.side = world.tabletop.side
         self.hand: str | None = None
+        self.grasp = CENTRED
         self.retries = 0
 
     def observe(self) -> State:
@@ -94,15 +97,15 @@ class Performer:
                 self.world.settle()
 
     def _try(self, task: Task, row: Performed, state: State) -> None:
-        segments = task.segments
-        if segments is None or not self._usable(task, state):
-            row.repaired = row.repaired or segments is not None
-            segments = self._planned(task, state, row)
+        if task.segments is None or not self._usable(task, state):
+            row.repaired = row.repaired or task.segments is not None
+            task = self._planned(task, state, row)
+        segments = task.segments or []
         match task.action:
             case Pick(block, _):
                 follow(self.world, segments)
                 self._require_grasp(block)
-                self.hand = block
+                self.hand, self.grasp = block, task.grasp
             case Place(block, target):
                 follow(self.world, segments)
                 self.hand = None
@@ -125,9 +128,9 @@ class Performer:
             state = self.observe()
             if number == most or not motion.unfinished(action, state):
                 return
-            segments = self._planned(Task(action, None), state, row)
+            segments = self._planned(Task(action, None), state, row).segments or []
 
-    def _planned(self, task: Task, state: State, row: Performed) -> list[Segment]:
+    def _planned(self, task: Task, state: State, row: Performed) -> Task:
         """Plan an action online and add the time that it takes to the record."""
         watch = Stopwatch()
         try:
@@ -137,13 +140,13 @@ class Performer:
             row.times.online += watch.wall
             row.times.online_cpu += watch.cpu
 
-    def _plan_online(self, task: Task, state: State) -> list[Segment]:
+    def _plan_online(self, task: Task, state: State) -> Task:
         """Plan an action from the observed scene and the arm's present state."""
         where, joints = self.look(), self.world.commanded()
         problem: ExecutionFailure | None = None
         for approach in self._ways_down(task, where):
             try:
-                return self.grounder.task(task.action, state, where, joints, approach).segments or []
+                return self.grounder.task(task.action, state, where, joints, approach, self.grasp)
             except ExecutionFailure as failure:
                 problem = problem or failure
         assert problem is not None
@@ -157,7 +160,7 @@ class Performer:
         The open pipeline takes the promised one without looking.
         """
         promised = task.approach
-        if promised is None:
+        if promised is None or promised.grasp != self.grasp:
             return [None]
         if not self.policy.repair or not isinstance(task.action, Place):
             return [promised, None]
@@ -168,9 +171,11 @@ class Performer:
         return [None, promised] if hand.still_free(promised, block, scene, SCENE_ALLOWANCE) else [None]
 
     def _usable(self, task: Task, state: State) -> bool:
-        """Whether a motion planned earlier starts where the arm is, and fits the scene (if the policy looks at it)."""
+        """Whether a motion planned earlier begins as the arm is now, and fits the scene (if the policy looks at it)."""
         moves = [segment for segment in task.segments or () if isinstance(segment, Move)]
         if moves and np.abs(moves[0].path.start - self.world.commanded()).max() > 1e-6:
+            return False
+        if task.approach is not None and task.approach.grasp != self.grasp:
             return False
         if not self.policy.repair:
             return True
@@ -200,5 +205,6 @@ def follow(world: World, segments: Sequence[Segment]) -> None:
         if isinstance(segment, Grip):
             world.grip(segment.opening, segment.seconds)
         else:
+            world.meant = segment.ignored
             world.follow(segment.trajectory, segment.opening)
             world.wait(PAUSE)

@@ -44,6 +44,8 @@ class Performed(msgspec.Struct, kw_only=True):
         attempts: Motions tried, retries included.
         gap: Whether it was a gap task, planned only when its pose was known.
         repaired: Whether a motion planned before was planned again because the scene had changed.
+        disturbed: Blocks that were moved by more than 2 cm and are no part of the action, and how far [m].
+        touched: Blocks that arm or hand touched outside of a grasp or push that was meant for them.
         times: Of this action.
     """
 
@@ -56,6 +58,8 @@ class Performed(msgspec.Struct, kw_only=True):
     attempts: int = 1
     gap: bool = False
     repaired: bool = False
+    disturbed: dict[str, float] = {}
+    touched: list[str] = []
     times: Times = msgspec.field(default_factory=Times)
 
 

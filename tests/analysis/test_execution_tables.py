@@ -1,7 +1,15 @@
 import json
 
 import pytest
-from smash_analysis.execution_tables import failure_table, make, metric_table, paired_table, read_episodes, slower_table
+from smash_analysis.execution_tables import (
+    disturbed_table,
+    failure_table,
+    make,
+    metric_table,
+    paired_table,
+    read_episodes,
+    slower_table,
+)
 
 from smash.problem.errors import MalformedFile
 
@@ -146,3 +154,23 @@ def test_where_topple_took_longer_is_named_with_both_sides(tmp_path):
     (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(r) + "\n" for r in records))
     (row,) = slower_table(read_episodes(tmp_path)).to_dict("records")
     assert (row["instance"], row["lost [s]"], row["planned with, without"]) == ("a", "3.0", "8, 8")
+
+
+def test_blocks_that_were_moved_or_touched_unmeant_are_counted_by_setting(tmp_path):
+    def row(step, **noted):
+        return {"step": step, "action": ["pick", "a", "s"], "origin": "plan", **noted}
+
+    records = [record("a", "topple", 20.0), record("b", "topple", 20.0), record("a", "no-topple", 20.0)]
+    records[0]["episode"]["actions"] = [row(1, disturbed={"x": 0.03, "y": 0.4}), row(2, disturbed={"x": 0.1}), row(3)]
+    records[1]["episode"]["actions"] = [row(1, touched=["z"])]
+    (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(each) + "\n" for each in records))
+    episodes = read_episodes(tmp_path)
+    assert list(episodes["disturbed"]) == [3, 0, 0]
+    (found,) = disturbed_table(episodes).to_dict("records")
+    assert (found["variant"], found["episodes"], found["disturbed"], found["touched"]) == ("topple", 2, 3, 1)
+    make(tmp_path, tmp_path / "out")
+    assert "Moved or touched unmeant" in (tmp_path / "out" / "tables.md").read_text()
+
+
+def test_where_nothing_was_moved_unmeant_the_page_says_so(results):
+    assert disturbed_table(read_episodes(results)).empty

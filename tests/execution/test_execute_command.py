@@ -8,7 +8,7 @@ import time
 import pytest
 
 from smash.execution.scene.scene_file import DEFAULT_SCENE
-from smash.problem import write_instance, write_plan
+from smash.problem import Place, PositionsGoal, make_instance, write_instance, write_plan
 from tests.execution.episodes import buried_plan, buried_target, plan_of
 
 
@@ -48,6 +48,17 @@ def test_a_failed_execution_exits_5_with_action_and_reason(filed):
     assert ended.stderr.count("\n") == 1
     assert "slip" in ended.stderr
     assert json.loads(ended.stdout) == json.loads((filed / "episode.json").read_text())
+
+
+def test_a_start_with_a_full_hand_is_one_line_and_exit_6(filed):
+    instance = make_instance(
+        name="full", blocks=["a"], stacks=["s1", "s2"], start={}, hand="a", goal=PositionsGoal({"a": ("s1", 1)})
+    )
+    write_instance(instance, filed / "instance.json")
+    write_plan(plan_of("full", Place("a", "s1")), filed / "plan.json")
+    ended = execute(filed)
+    assert (ended.returncode, ended.stdout, ended.stderr.count("\n")) == (6, "", 1)
+    assert "'a' in the hand" in ended.stderr
 
 
 @pytest.mark.parametrize(

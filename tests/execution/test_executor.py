@@ -7,7 +7,8 @@ from smash.execution.policy import OPEN
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.scene.tabletop import Friction
 from smash.execution.viewing.recording import Recording
-from smash.problem import Law, Pick, Place, PositionsGoal, make_instance
+from smash.problem import Law, Pick, Place, Plan, PlanOptions, PositionsGoal, make_instance
+from smash.problem.errors import Unsupported
 from smash.problem.files.documents import parse_json
 from smash.records.episodes import episode_text
 from tests.execution.episodes import buried_plan, buried_target, plan_of, swapped_pair, swapped_plan
@@ -99,6 +100,66 @@ def test_the_observed_instance_keeps_the_goal():
     assert again.goal == instance.goal
     assert again.table == ("a", "b")
     assert again.start == {"s1": (), "s2": (), "s3": ()}
+
+
+def moving(block, offset, after):
+    """A hand from nowhere: at a frame after so many seconds, it moves a block by `offset` [m]."""
+    done = []
+
+    def ghost(world):
+        if not done and world.time > after:
+            position, turn = world.client.getBasePositionAndOrientation(world.bodies[block])
+            there = [a + b for a, b in zip(position, offset, strict=True)]
+            world.client.resetBasePositionAndOrientation(world.bodies[block], there, turn)
+            done.append(world.time)
+
+    return ghost
+
+
+def lying_beside():
+    return make_instance(
+        name="beside",
+        blocks=["a", "b"],
+        stacks=["s1", "s2"],
+        start={"s2": ["a"]},
+        table=["b"],
+        goal=PositionsGoal({"a": ("s1", 1)}),
+    )
+
+
+LONG_WAY = (Pick("a", "s2"), Place("a", "s1"))
+
+
+def test_what_moves_and_is_no_part_of_the_action_is_named_with_how_far():
+    ghost = moving("b", (0.05, 0.0, 0.0), 1.0)
+    episode = run(lying_beside(), plan_of("beside", *LONG_WAY), policy=OPEN, on_frame=ghost)
+    assert episode.success, episode.failure
+    assert [sorted(row.disturbed) for row in episode.actions] == [["b"], []]
+    assert episode.actions[0].disturbed["b"] == pytest.approx(0.05, abs=0.005)
+    document = parse_json(episode_text(episode), "episode")
+    assert list(document["actions"][0]["disturbed"]) == ["b"]
+
+
+def test_the_open_pipeline_stops_where_a_block_has_moved_that_a_later_motion_counts_on():
+    later = plan_of("beside", *LONG_WAY, Pick("b", "table"), Place("b", "s2"))
+    ghost = moving("b", (0.05, 0.0, 0.0), 1.0)
+    episode = run(lying_beside(), later, policy=OPEN, on_frame=ghost)
+    assert (episode.failure.name, episode.failure.step) == ("fell", 1)
+    assert "'b' was moved by 5." in episode.failure.reason
+    assert run(lying_beside(), later, on_frame=moving("b", (0.05, 0.0, 0.0), 1.0)).success
+
+
+def test_nothing_is_disturbed_or_touched_where_all_goes_well():
+    episode = run(swapped_pair(), swapped_plan(), policy=OPEN)
+    assert [(row.disturbed, row.touched) for row in episode.actions] == [({}, [])] * 5
+
+
+def test_a_start_with_a_block_in_the_hand_is_refused():
+    instance = make_instance(
+        name="full", blocks=["a"], stacks=["s1"], start={}, hand="a", goal=PositionsGoal({"a": ("s1", 1)})
+    )
+    with pytest.raises(Unsupported, match="starts with block 'a' in the hand"):
+        run(instance, Plan(instance, "by hand", PlanOptions(), "feasible", (Place("a", "s1"),)))
 
 
 def test_an_episode_is_written_as_json():

@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 
 from smash.execution.actions.arm_motions import ArmMotions
+from smash.execution.actions.registry import MOTIONS
 from smash.execution.grounding import Grounder
 from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.scene.start import starting_poses
-from smash.motion.robot import READY, panda
-from smash.problem import IllegalAction, Law, Pick, Place, State, Topple
+from smash.motion.move import Move
+from smash.motion.robot import FINGERTIP_BEYOND_TOOL, READY, panda
+from smash.problem import IllegalAction, Law, Pick, Place, PositionsGoal, State, Topple, make_instance
 from tests.execution.episodes import swapped_pair, swapped_plan
 
 SCENE = default_scene()
@@ -31,13 +33,62 @@ def ground(grounder, actions):
 
 
 def test_a_pick_of_a_toppled_block_is_a_gap_and_the_place_after_it_promises_a_way_down(grounder):
-    topple, pick, place, *_ = ground(grounder, swapped_plan().actions)
+    topple, pick, place, back = ground(
+        grounder, [Topple("s2", 1), Pick("b", "table"), Place("b", "s1"), Pick("b", "s1")]
+    )
     assert topple.segments
     assert (pick.segments, pick.end, pick.problem) == (None, None, None)
     assert place.segments is None
-    slot = SCENE.bind(swapped_pair())["s2"]
+    slot = SCENE.bind(swapped_pair())["s1"]
     assert panda().forward(place.approach.line.end).position[:2] == pytest.approx([slot.x, slot.y], abs=1e-3)
     assert np.array_equal(place.end, place.approach.line.start)
+    assert np.array_equal(back.segments[0].path.start, place.end)
+
+
+def test_what_happens_beside_blocks_that_were_toppled_is_a_gap_until_they_are_gone(grounder):
+    """Back to the toppled pile's own place: blocks may lie there. With the last of them in the hand, none can."""
+    tasks = ground(grounder, swapped_plan().actions)
+    assert [task.segments is None and task.approach is None for task in tasks] == [False, True, True, True, False]
+    assert all(task.problem is None for task in tasks)
+
+
+def test_a_pick_that_begins_where_a_gap_ends_is_a_gap_itself_and_the_place_after_it_is_promised(grounder):
+    tasks = grounder.ground(
+        [Topple("s2", 2), Pick("a", "s2"), Place("a", "s1"), Pick("c", "s3"), Place("c", "s1")],
+        Law(beside()),
+        laid_out(beside()),
+        READY,
+    )
+    beside_strip, onto, far, back = tasks[1:]
+    assert (beside_strip.segments, beside_strip.approach) == (None, None)
+    assert onto.approach is not None
+    assert far.segments
+    assert back.segments
+
+
+def beside():
+    """A pile of two, and a block on the next place."""
+    return make_instance(
+        name="beside",
+        blocks=["a", "b", "c"],
+        stacks=["s1", "s2", "s3"],
+        start={"s2": ["a", "b"], "s3": ["c"]},
+        goal=PositionsGoal({}),
+    )
+
+
+def test_motions_planned_before_a_topple_is_seen_keep_clear_of_where_its_blocks_may_be(grounder):
+    instance = beside()
+    actions = [Topple("s2", 1), Pick("c", "s3"), Place("c", "s1")]
+    topple, pick, place = grounder.ground(actions, Law(instance), laid_out(instance), READY)
+    arm, (start, after, *_) = grounder.arm, Law(instance).states(actions)
+    areas = MOTIONS[Topple].areas(arm, actions[0], start, laid_out(instance))
+    assert {area.direction for area in areas} == set(SCENE.stacks[1].directions)
+    assert after.table == {"a", "b"}
+    heaps = arm.scene({}, areas=areas)
+    assert [move.free(heaps, 0.0) for move in [*pick.segments, *place.segments] if isinstance(move, Move)] == [True] * 6
+    tip = panda().forward(topple.end).position[2] - FINGERTIP_BEYOND_TOOL
+    assert tip > max(area.height for area in areas)
 
 
 def test_without_a_topple_everything_is_planned_and_each_motion_begins_where_the_one_before_ends(grounder):

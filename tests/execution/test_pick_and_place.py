@@ -3,13 +3,17 @@
 import numpy as np
 import pytest
 
-from smash.execution.actions.arm_motions import ArmMotions
+from smash.execution.actions.arm_motions import RELEASE_HEIGHT, ArmMotions
+from smash.execution.actions.grasps import CENTRED
 from smash.execution.actions.pick_and_place import PickAndPlace
-from smash.execution.scene.block_pose import BlockPose, standing
+from smash.execution.scene.block_pose import QUARTER, BlockPose, standing
 from smash.execution.scene.scene_file import default_scene
+from smash.motion.collision import CONTACT_MARGIN, CollisionChecker
 from smash.motion.errors import NoMotion
+from smash.motion.kinematics import inverse
 from smash.motion.move import Move
-from smash.motion.robot import READY
+from smash.motion.obstacles import HandState
+from smash.motion.robot import READY, panda
 
 SIDE = 0.045
 
@@ -43,7 +47,7 @@ def test_a_block_is_lifted_without_touching_its_neighbour_where_there_is_a_way(a
     slot = default_scene().stacks[1]
     block = standing(slot.x, slot.y, SIDE / 2, 0.0)
     scene = arm.scene({"a": block, "b": standing(slot.x + SIDE + 0.001, slot.y, SIDE / 2, 0.0)})
-    lift = [segment for segment in hand.pick(READY, "a", block, scene) if isinstance(segment, Move)][-1]
+    lift = [segment for segment in hand.pick(READY, "a", block, scene)[0] if isinstance(segment, Move)][-1]
     assert lift.hand.attached is not None
     assert lift.free(scene, 0.0)
 
@@ -53,4 +57,44 @@ def test_a_block_under_a_leaning_one_is_picked_all_the_same(arm, hand):
     block = standing(slot.x, slot.y, SIDE / 2, 0.0)
     turn = np.array([[np.cos(0.5), 0, np.sin(0.5)], [0, 1, 0], [-np.sin(0.5), 0, np.cos(0.5)]])
     leaning = BlockPose(np.array([slot.x + 0.048, slot.y, 0.035]), turn)
-    assert hand.pick(READY, "a", block, arm.scene({"a": block, "b": leaning}))
+    assert hand.pick(READY, "a", block, arm.scene({"a": block, "b": leaning}))[0]
+
+
+def tower_beside(away, levels=9):
+    """A block at a stack's place, and a tower whose middle is `away` from it."""
+    slot = default_scene().stacks[1]
+    block = standing(slot.x, slot.y, SIDE / 2, slot.angle)
+    x, y = slot.point(away, 0.0, "counter-clockwise")
+    walls = {f"w{level}": standing(x, y, (level + 0.5) * SIDE, slot.angle) for level in range(levels)}
+    return block, walls
+
+
+@pytest.mark.parametrize("away", [0.050, 0.055, 0.060])
+def test_a_block_at_the_foot_of_a_tower_is_taken_beside_its_middle_and_put_down_in_its_place(arm, hand, away):
+    block, walls = tower_beside(away)
+    scene = arm.scene({"a": block, **walls})
+    segments, grasp = hand.pick(READY, "a", block, scene)
+    moves = [segment for segment in segments if isinstance(segment, Move)]
+    assert all(move.free(scene, 0.0) for move in moves)
+    target = standing(*default_scene().stacks[2].point(0.0, 0.0, "outward"), 1.5 * SIDE, 0.2)
+    way = hand.landing(moves[-1].path.end, "a", target, scene, grasp)
+    tool = panda().forward(way.line.end)
+    held = grasp.hand(SIDE).attached
+    stands = tool.position + tool.rotation @ held.translations[0]
+    assert way.grasp == grasp
+    assert np.allclose(stands[:2], target.position[:2], atol=1e-4)
+    assert stands[2] == pytest.approx(target.position[2] + RELEASE_HEIGHT, abs=1e-4)
+
+
+def test_a_block_that_stands_free_is_taken_by_its_middle(arm, hand):
+    block = standing(0.45, 0.1, SIDE / 2, 0.3)
+    assert hand.pick(READY, "a", block, arm.scene({"a": block}))[1] == CENTRED
+
+
+def test_a_block_at_the_foot_of_a_tower_has_no_centred_grasp(arm):
+    """So that the grasps beside the middle are what helps."""
+    block, walls = tower_beside(0.050)
+    scene = arm.scene(walls)
+    hands = [CENTRED.tool(block.position, block.yaw + turn * QUARTER) for turn in range(4)]
+    checker = CollisionChecker(scene, HandState(min(arm.openings)), CONTACT_MARGIN)
+    assert not any(checker.free(joints) for tool in hands for joints in inverse(tool, READY, count=3))

@@ -10,7 +10,8 @@ from smash.execution.physics.world import STEP, World, quaternion_of
 from smash.execution.scene.block_pose import standing
 from smash.execution.scene.scene_file import default_scene
 from smash.motion.collision import FINGER_CORNERS, FINGER_JOINT_Z
-from smash.motion.poses import yaw_rotation
+from smash.motion.kinematics import inverse
+from smash.motion.poses import top_down, yaw_rotation
 from smash.motion.robot import READY, panda
 from smash.motion.timing import trapezoid
 
@@ -52,6 +53,22 @@ def test_the_arm_follows_a_trajectory_to_its_end_and_the_fingers_open():
         assert world.joints() == pytest.approx(goal, abs=0.005)
         assert world.tool_position() == pytest.approx(panda().forward(goal).position, abs=0.005)
         assert world.opening == 0.01
+
+
+@pytest.mark.parametrize("meant", [frozenset(), frozenset({"a"})])
+def test_a_block_that_the_hand_shoves_is_noted_unless_it_is_meant_to(meant):
+    lowered = inverse(top_down((0.4, 0.0, SIDE / 2), 0.0))[0]
+    turned = lowered + np.array([0.4, 0, 0, 0, 0, 0, 0])
+    x, y = panda().forward(lowered + np.array([0.25, 0, 0, 0, 0, 0, 0])).position[:2]
+    blocks = {"a": standing(x, y, SIDE / 2, 0.0), "b": standing(-0.4, 0.0, SIDE / 2, 0.0)}
+    with World(SCENE, blocks, lowered) as world:
+        world.wait(0.1)
+        assert world.touched() == []
+        world.meant = meant
+        world.follow(trapezoid(lowered, turned))
+        assert world.pose("a").distance(x, y) > 0.02
+        assert world.touched() == ([] if meant else ["a"])
+        assert world.touched() == []
 
 
 def test_a_quaternion_of_a_quarter_turn():

@@ -8,7 +8,7 @@ from typing import Any
 
 import pandas as pd
 
-from smash.records.episodes import EpisodeRecord
+from smash.records.episodes import Episode, EpisodeRecord
 from smash_analysis.tables.actions import ACTION_COLUMNS, named
 
 TIMES = ("offline", "offline_cpu", "online", "online_cpu", "execution")
@@ -19,7 +19,7 @@ EPISODE_TYPES = {
     **dict.fromkeys(("budget", "first_plan_seconds", "best_plan_seconds"), "float64"),
     "success": "boolean",
     **dict.fromkeys(("failure", "failure_reason"), "string"),
-    **dict.fromkeys(("failure_step", "actions_executed", "replans", "retries"), "Int64"),
+    **dict.fromkeys(("failure_step", "actions_executed", "replans", "retries", "disturbed", "touched"), "Int64"),
     **{f"{name}_seconds": "float64" for name in (*TIMES, "task")},
     "problem": "string",
     "wall_seconds": "float64",
@@ -36,6 +36,7 @@ ACTION_TYPES = {
     **dict.fromkeys(("origin", "outcome", "reason"), "string"),
     "attempts": "Int64",
     **dict.fromkeys(("gap", "repaired"), "boolean"),
+    **dict.fromkeys(("disturbed", "touched"), "string"),
     "begun_seconds": "float64",
     **{f"{name}_seconds": "float64" for name in TIMES},
 }
@@ -45,7 +46,9 @@ ACTION_TYPES = {
 def episodes_table(records: Sequence[EpisodeRecord]) -> pd.DataFrame:
     """Return one row an episode: the record's plain fields, the episode's, what it failed of, its times [s].
 
-    Where a process ended without an episode `success` is false, and `problem` says why.
+    `disturbed` counts the blocks that were moved by an action they are no part of, once for each such action;
+    `touched` those that the arm touched unmeant. Where a process ended without an episode `success` is false, and
+    `problem` says why.
     """
     return _typed([_episode_row(record) for record in records], EPISODE_TYPES)
 
@@ -61,6 +64,7 @@ def _episode_row(record: EpisodeRecord) -> dict[str, Any]:
         "failure_reason": None if failure is None else failure.reason,
         "failure_step": None if failure is None else failure.step,
         **{name: getattr(episode, name, None) for name in ("actions_executed", "replans", "retries")},
+        **{name: _named(episode, name) for name in ("disturbed", "touched")},
         **{f"{name}_seconds": getattr(times, name, None) for name in (*TIMES, "task")},
         "load_before": before,
         "load_after": after,
@@ -70,6 +74,11 @@ def _episode_row(record: EpisodeRecord) -> dict[str, Any]:
         "machine_processor": record.machine.processor,
         "versions": json.dumps(record.versions),
     }
+
+
+def _named(episode: Episode | None, what: str) -> int | None:
+    """How many blocks its actions name as disturbed or touched."""
+    return None if episode is None else sum(len(getattr(performed, what)) for performed in episode.actions)
 
 
 def actions_table(records: Sequence[EpisodeRecord]) -> pd.DataFrame:
@@ -82,6 +91,8 @@ def actions_table(records: Sequence[EpisodeRecord]) -> pd.DataFrame:
             **{name: getattr(performed, name, None) for name in ACTION_TYPES},
             "key": record.key,
             **named(performed.action),
+            "disturbed": json.dumps(performed.disturbed),
+            "touched": json.dumps(performed.touched),
             "begun_seconds": performed.begun,
             **{f"{name}_seconds": getattr(performed.times, name) for name in TIMES},
         }

@@ -7,18 +7,20 @@ revealed. Nothing here knows the simulator.
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from smash.execution.scene.area import Area
 from smash.execution.scene.block_pose import BlockPose
+from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.scene.tray import Tray
 from smash.motion.collision import CONTACT_MARGIN, DEFAULT_MARGIN, CollisionChecker
 from smash.motion.errors import NoMotion
 from smash.motion.move import Move
-from smash.motion.obstacles import Attached, BodyName, HandState, Scene
+from smash.motion.obstacles import BodyName, HandState, Scene
 from smash.motion.paths import Path
 from smash.motion.planner import MotionPlanner
 from smash.motion.poses import Vector
@@ -61,7 +63,6 @@ class ArmMotions:
 
     Attributes:
         planner: Plans paths.
-        holding: The hand with a block in it.
     """
 
     def __init__(self, tabletop: Tabletop, seed: int = 0) -> None:
@@ -69,7 +70,6 @@ class ArmMotions:
         self.side = tabletop.side
         self.pace = Pace(tabletop.velocity, tabletop.acceleration)
         self.planner = MotionPlanner(seed=seed)
-        self.holding = HandState(self.side / 2, Attached.cube(self.side))
 
     def warm_up(self) -> None:
         """Load and compile what motion planning uses, so that the first action's time is not theirs."""
@@ -79,15 +79,32 @@ class ArmMotions:
         self.move(self.planner.line(READY, (0.0, 0.0, 0.05), bare), HandState(0.0))
         importlib.import_module("smash.motion.rrtconnect")
 
-    def scene(self, blocks: Mapping[str, BlockPose], carriers: Mapping[str, BlockPose] | None = None) -> Scene:
-        """Blocks, carriers and table as the motion planner sees them."""
+    def scene(
+        self,
+        blocks: Mapping[str, BlockPose],
+        carriers: Mapping[str, BlockPose] | None = None,
+        areas: Iterable[Area] = (),
+    ) -> Scene:
+        """Blocks, carriers and table as the motion planner sees them.
+
+        Args:
+            blocks: Poses of blocks.
+            carriers: Poses of carriers.
+            areas: Where blocks may be whose poses nobody knows: solid, as high as they may lie.
+        """
         names = list(blocks)
         centres = np.array([blocks[name].position for name in names]).reshape(-1, 3)
         rotations = np.array([blocks[name].rotation for name in names]).reshape(-1, 3, 3)
         scene = Scene.of_boxes(names, centres, self.side / 2, rotations)
         for name, pose in (carriers or {}).items():
             scene = scene.joined(self.tray.scene(name, pose))
+        for area in areas:
+            scene = scene.joined(area.box())
         return scene.with_table()
+
+    def around(self, where: Geometry) -> Scene:
+        """All that is known of where things are, as the motion planner sees it."""
+        return self.scene(where.blocks, where.carriers, where.areas)
 
     @property
     def tray(self) -> Tray:

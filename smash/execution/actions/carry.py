@@ -105,7 +105,7 @@ class CarryMotion(AggregateMotion[Carry]):
         """
         tray = arm.tray
         moved: frozenset[BodyName] = frozenset([CarrierBody(carrier), *aboard])
-        scene = arm.scene(where.blocks, where.carriers)
+        scene = arm.around(where)
         rest = scene.without(moved)
         opened = HandState(tray.post / 2 + OPENINGS[0])
         down = arm.planner.line(joints, (0.0, 0.0, DESCENT), scene, hand=opened).reversed()

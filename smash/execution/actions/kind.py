@@ -10,6 +10,7 @@ from abc import ABC, abstractmethod
 from typing import Generic, TypeVar
 
 from smash.execution.actions.arm_motions import ArmMotions, Segment
+from smash.execution.scene.area import Area
 from smash.execution.scene.geometry import Geometry
 from smash.motion.poses import Vector
 from smash.problem.model import Aggregating, State
@@ -48,6 +49,17 @@ class AggregateMotion(ABC, Generic[A]):
     @abstractmethod
     def places(self, action: A) -> tuple[str, ...]:
         """Return the places where a loose block would be in the action's way."""
+
+    def areas(self, arm: ArmMotions, action: A, state: State, where: Geometry) -> tuple[Area, ...]:
+        """Return where the blocks may be afterwards whose poses nobody can foresee.
+
+        Args:
+            arm: Plans motions.
+            action: The action.
+            state: The law's state before it.
+            where: The poses that are known then.
+        """
+        return ()
 
     def motions(self, action: A, state: State) -> int:
         """Return how many motions the action is meant to take from the law's state before it."""

@@ -80,7 +80,7 @@ class LiftMotion(AggregateMotion[Lift]):
             NoIk, NoMotion: where there is none; the message is about the grasp with most room.
         """
         lifted = _lifted(action, state)
-        scene = arm.scene(where.blocks, where.carriers)
+        scene = arm.around(where)
         target = _target(arm, action, state, where)
         problem: ExecutionFailure | None = None
         for grasp in _grasps(arm, start, lifted, where.blocks[lifted[0]], target, scene)[:MOST_GRASPS]:

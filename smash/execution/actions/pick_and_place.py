@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -16,13 +17,14 @@ from smash.execution.actions.arm_motions import (
     Grip,
     Segment,
 )
+from smash.execution.actions.grasps import CENTRED, GRASPS, Grasp
 from smash.execution.scene.block_pose import QUARTER, BlockPose
 from smash.motion.collision import CONTACT_MARGIN, CollisionChecker
 from smash.motion.errors import NoIk, NoMotion
 from smash.motion.kinematics import inverse
 from smash.motion.obstacles import BodyName, HandState, Scene
 from smash.motion.paths import Path
-from smash.motion.poses import Vector, top_down
+from smash.motion.poses import Vector
 from smash.problem.errors import ExecutionFailure
 
 HOVERS = (0.10, 0.06, 0.03)
@@ -38,11 +40,13 @@ class Approach:
         line: From above down to the contact.
         opening: Of the fingers when they are open there [m].
         clearance: Room between hand or fingers and everything else [m].
+        grasp: Where the hand is on the block there.
     """
 
     line: Path
     opening: float
     clearance: float
+    grasp: Grasp = CENTRED
 
 
 class PickAndPlace:
@@ -55,17 +59,36 @@ class PickAndPlace:
     def __init__(self, arm: ArmMotions) -> None:
         self._arm = arm
 
-    def pick(self, start: Vector, block: str, pose: BlockPose, scene: Scene) -> list[Segment]:
-        """From `start` [rad] to above the block, down, close, and up again.
+    def pick(self, start: Vector, block: str, pose: BlockPose, scene: Scene) -> tuple[list[Segment], Grasp]:
+        """From `start` [rad] to above the block, down, close, and up again; and how the hand holds it then.
+
+        The hand takes the block by its middle where it can, else a little beside it or leaning: a pile that stands
+        near is then no hindrance.
 
         Raises:
-            NoIk, NoMotion: where no grasp can be reached; the message is about the one with most room.
+            NoIk, NoMotion: where no grasp can be reached; the message is about the centred one with most room.
         """
-        yaws = [pose.yaw + turn * QUARTER for turn in range(4)]
-        near = scene.without([block])
-        approaches = self._approaches(start, pose.position, yaws, near, self._arm.openings, carrying=False)
         problem: ExecutionFailure | None = None
-        for approach in approaches:
+        # A block that leans on the one to be picked is shaken off in the last resort alone.
+        for alone, grasp in product((True, False), GRASPS):
+            try:
+                return self._pick(start, block, pose, scene, grasp, alone), grasp
+            except ExecutionFailure as failure:
+                problem = problem or failure
+        assert problem is not None
+        raise problem
+
+    def _pick(
+        self, start: Vector, block: str, pose: BlockPose, scene: Scene, grasp: Grasp, alone: bool
+    ) -> list[Segment]:
+        """With one grasp; `alone`: without shaking off what leans on the block.
+
+        Raises:
+            NoIk, NoMotion: where there is no motion for it.
+        """
+        near = scene.without([block])
+        problem: ExecutionFailure | None = None
+        for approach in self._approaches(start, pose.position, pose.yaw, near, grasp, alone):
             open_hand = HandState(approach.opening)
             try:
                 transfer = self._arm.transfer(start, approach.line.start, scene, open_hand)
@@ -77,20 +100,25 @@ class PickAndPlace:
                 *transfer,
                 self._arm.move(approach.line, open_hand, touched, CONTACT_MARGIN),
                 Grip(0.0, CLOSE_SECONDS),
-                self._arm.move(approach.line.reversed(), self._arm.holding, touched, CONTACT_MARGIN),
+                self._arm.move(approach.line.reversed(), grasp.hand(self._arm.side), touched, CONTACT_MARGIN),
             ]
         raise problem or NoMotion(f"no room for the hand around block {block!r}")
 
-    def landing(self, start: Vector, block: str, target: BlockPose, scene: Scene) -> Approach:
-        """The way down to where `block`, which is in the hand, shall stand.
+    def landing(self, start: Vector, block: str, target: BlockPose, scene: Scene, grasp: Grasp = CENTRED) -> Approach:
+        """The way down to where a block, which is in the hand, shall stand.
+
+        Args:
+            start: Where the arm is [rad], shape (7,).
+            block: What is in the hand.
+            target: Where it shall stand.
+            scene: Everything.
+            grasp: How the hand holds it.
 
         Raises:
             NoIk, NoMotion: where there is none.
         """
         point = target.position + np.array([0.0, 0.0, RELEASE_HEIGHT])
-        yaws = [target.yaw + turn * QUARTER for turn in range(4)]
-        near = scene.without([block])
-        for approach in self._approaches(start, point, yaws, near, self._arm.openings, carrying=True):
+        for approach in self._approaches(start, point, target.yaw, scene.without([block]), grasp, True):
             return approach
         x, y, z = (float(value) for value in target.position)
         raise NoMotion(f"no room for the hand to put a block down at x {x:.2f}, y {y:.2f}, z {z:.2f} m")
@@ -105,7 +133,7 @@ class PickAndPlace:
             allowance: How much closer than planned it may come [m].
         """
         near, waypoints = scene.without([block]), approach.line.waypoints
-        hands = (self._arm.holding, HandState(approach.opening))
+        hands = (approach.grasp.hand(self._arm.side), HandState(approach.opening))
         return all(CollisionChecker(near, hand, CONTACT_MARGIN - allowance).path_free(waypoints) for hand in hands)
 
     def place(self, start: Vector, block: str, approach: Approach, scene: Scene) -> list[Segment]:
@@ -115,9 +143,10 @@ class PickAndPlace:
             NoMotion: where the way there is blocked.
         """
         touched: frozenset[BodyName] = frozenset([block])
+        holding = approach.grasp.hand(self._arm.side)
         return [
-            *self._arm.transfer(start, approach.line.start, scene, self._arm.holding, touched),
-            self._arm.move(approach.line, self._arm.holding, touched, CONTACT_MARGIN),
+            *self._arm.transfer(start, approach.line.start, scene, holding, touched),
+            self._arm.move(approach.line, holding, touched, CONTACT_MARGIN),
             Grip(approach.opening, OPEN_SECONDS),
             self._arm.move(approach.line.reversed(), HandState(approach.opening), touched, CONTACT_MARGIN),
         ]
@@ -126,22 +155,30 @@ class PickAndPlace:
         self,
         start: Vector,
         point: Vector,
-        yaws: Sequence[float],
+        yaw: float,
         near: Scene,
-        openings: Iterable[float],
-        carrying: bool,
+        grasp: Grasp,
+        loaded: bool,
     ) -> Iterable[Approach]:
-        """Ways down to a point, those with most room first; equal ones by how near they are to `start`.
+        """Ways down to a block whose middle is at a point, those with most room first; then those near to `start`.
+
+        Args:
+            start: Where the arm is [rad], shape (7,).
+            point: [m], shape (3,).
+            yaw: Of a side of the block [rad].
+            near: All else.
+            grasp: Where the hand is on the block.
+            loaded: Whether the way must be free with the block in the hand too.
 
         Raises:
             NoIk: where the arm cannot reach the point from above.
         """
-        poses = [top_down(point, yaw) for yaw in yaws]
+        poses = [grasp.tool(point, yaw + turn * QUARTER) for turn in range(4)]
         solutions = [joints for pose in poses for joints in inverse(pose, start, count=SOLUTIONS)]
         if not solutions:
             raise NoIk(f"the hand cannot reach x {point[0]:.3f}, y {point[1]:.3f}, z {point[2]:.3f} m from above")
         ranked = []
-        for opening in openings:
+        for opening in self._arm.openings:
             checker = CollisionChecker(near, HandState(opening), 0.0)
             for joints in solutions:
                 clearance = checker.slack(joints)
@@ -151,18 +188,18 @@ class PickAndPlace:
             if any(entry[0] <= -ENOUGH_CLEARANCE for entry in ranked):
                 break
         ranked.sort(key=lambda entry: entry[:3])
-        # A block that leans on the one to be picked is shaken off in the last resort alone.
-        for loaded in (True,) if carrying else (True, False):
-            for height in HOVERS:
-                for _, negative, _, clearance, joints in ranked:
-                    line = self._line_down(joints, height, near, HandState(-negative), loaded)
-                    if line is not None:
-                        yield Approach(line, -negative, clearance)
+        back = grasp.hand(self._arm.side) if loaded else None
+        for height in HOVERS:
+            for _, negative, _, clearance, joints in ranked:
+                line = self._line_down(joints, height, near, HandState(-negative), back)
+                if line is not None:
+                    yield Approach(line, -negative, clearance, grasp)
 
-    def _line_down(self, joints: Vector, height: float, near: Scene, empty: HandState, loaded: bool) -> Path | None:
-        """The straight way down that the open hand can take, and with a block too where it is `loaded`; or None."""
+    def _line_down(
+        self, joints: Vector, height: float, near: Scene, empty: HandState, back: HandState | None
+    ) -> Path | None:
+        """The straight way down that the open hand can take, and `back`, with a block in it; or None."""
         try:
-            back = self._arm.holding if loaded else None
             return self._arm.planner.line(joints, (0.0, 0.0, height), near, hand=empty, back=back).reversed()
         except ExecutionFailure:
             return None

@@ -16,6 +16,7 @@ import numpy as np
 
 from smash.execution.actions.arm_motions import ArmMotions, Segment
 from smash.execution.actions.kind import AggregateMotion
+from smash.execution.scene.area import Area
 from smash.execution.scene.block_pose import BlockPose
 from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.tabletop import Slot
@@ -42,6 +43,10 @@ LEAD = 0.08
 """Length of the straight descent to a push close to the table [m]."""
 LANDING = {1: (0.23, 0.04), 2: (0.35, 0.05), 3: (0.52, 0.05), 4: (0.52, 0.10), 5: (0.68, 0.11)}
 """Measured: how far along the push and how far aside of it blocks come to rest [m], by the number that fall."""
+HEAP = {1: 1.5, 5: 2.5}
+"""How high they may lie, in sides of a block, by the least number that fall: measured 1.0, and 2.1 in two pushes."""
+OVER_HEAP = 0.015
+"""After a push the fingertips rise to this far above the highest heap [m]: the next motion passes over what fell."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,14 +65,16 @@ class Manner:
 SWEEP = Manner(0.3, 2.6)
 """The whole pile falls and nothing stands below: slowly, and far enough to clear the pile's own place."""
 TALL_SWEEP = Manner(0.15, 2.6)
-"""The same with 5 blocks or more: the upper ones would be thrown out of reach by a faster push."""
+"""The same with 5 or 6 blocks: the upper ones would be thrown out of reach by a faster push."""
+TALLEST_SWEEP = Manner(0.08, 2.6)
+"""The same with more. In several pushes a second one would ram what the first has left in the strip."""
 SHORT_CUT = Manner(0.5, 2.0)
 """Up to 3 blocks fall from the rest of the pile."""
 TALL_CUT = Manner(0.8, 1.1)
 """More fall: a quick, short push leaves the rest of the pile where it is, a long one drags it along."""
 
 
-MOST_SWEPT = 6
+MOST_SWEPT = 9
 """More blocks than this are not swept off the table at once, ..."""
 MOST_CUT = 4
 """... and no more than this off a standing rest: the upper ones would fall out of reach. They go in several pushes."""
@@ -94,7 +101,7 @@ def pushes_needed(height: int, top: int) -> int:
 def manner(height: int, falling: int) -> Manner:
     """How to topple so many blocks from this height on; measured, see `smash topple-map`."""
     if height == 1:
-        return TALL_SWEEP if falling >= 5 else SWEEP
+        return SWEEP if falling < 5 else TALL_SWEEP if falling < 7 else TALLEST_SWEEP
     return SHORT_CUT if falling <= 3 else TALL_CUT
 
 
@@ -109,6 +116,11 @@ class Strip:
 def strip(falling: int) -> Strip:
     """The landing strip of a topple of so many blocks."""
     return Strip(*LANDING[min(falling, max(LANDING))])
+
+
+def heap(falling: int) -> float:
+    """How high so many toppled blocks may lie, in sides of a block."""
+    return HEAP[max(least for least in HEAP if least <= falling)]
 
 
 def directions(slot: Slot, falling: int, others: Iterable[BlockPose], side: float) -> list[str]:
@@ -141,8 +153,9 @@ def topple(
     poses: Mapping[str, BlockPose],
     carriers: Mapping[str, BlockPose] | None = None,
     loose: frozenset[str] = frozenset(),
+    areas: Iterable[Area] = (),
 ) -> list[Segment]:
-    """From `start` [rad] to before the pile, through its upper part, and back.
+    """From `start` [rad] to before the pile, through its upper part, back, and up.
 
     The push takes what lies above `height`, or the upper part of it where that is too much for one push (`first_cut`).
 
@@ -155,6 +168,7 @@ def topple(
         poses: All blocks whose poses are known.
         carriers: All carriers.
         loose: Blocks that lie on the table: where there is no other way, the push shoves them along.
+        areas: Where there may be more blocks.
 
     Raises:
         NoIk, NoMotion: where no direction allows it; the message is about the preferred one.
@@ -162,7 +176,7 @@ def topple(
     cut = first_cut(height, len(pile))
     falling = pile[cut - 1 :]
     others = [pose for name, pose in poses.items() if name not in pile] + list((carriers or {}).values())
-    scene = arm.scene(poses, carriers)
+    scene = arm.scene(poses, carriers, areas)
     preferred = directions(slot, len(falling), others, arm.side)
     problem: ExecutionFailure | None = None
     for shoved, direction in product(dict.fromkeys((frozenset[str](), loose)), preferred):
@@ -186,7 +200,14 @@ class ToppleMotion(AggregateMotion[Topple]):
         """
         pile, slot = tuple(state.piles[action.location]), where.slots[action.location]
         loose = frozenset(state.table).intersection(where.blocks)
-        return topple(arm, start, slot, pile, action.height, where.blocks, where.carriers, loose)
+        return topple(arm, start, slot, pile, action.height, where.blocks, where.carriers, loose, where.areas)
+
+    def areas(self, arm: ArmMotions, action: Topple, state: State, where: Geometry) -> tuple[Area, ...]:
+        """Return the strips of all directions: which of them a push will take is settled when it is made."""
+        slot, fallen = where.slots[action.location], frozenset(kind_of(action).gathered(state, action))
+        room = strip(len(fallen))
+        height = heap(len(fallen)) * arm.side
+        return tuple(Area(slot, way, room.length, room.half_width, height, fallen) for way in slot.directions)
 
     def foresee(self, arm: ArmMotions, action: Topple, state: State, where: Geometry) -> None:
         """Forget the poses of what falls."""
@@ -238,7 +259,7 @@ def _push(
                 *way,
                 arm.move(push, closed, fallen, PUSH_MARGIN, Pace(tool_speed=how.speed)),
                 arm.move(push.reversed(), closed, fallen, PUSH_MARGIN),
-                *away,
+                *(_rise(arm, joints, height, len(falling), scene) or away),
             ]
     raise problem or NoIk(f"the hand cannot reach the start of a {direction} push at height {height}")
 
@@ -258,6 +279,21 @@ def _way_in(arm: ArmMotions, start: Vector, joints: Vector, scene: Scene) -> tup
         return [*above, arm.move(down, closed, margin=PUSH_MARGIN)], [
             arm.move(down.reversed(), closed, margin=PUSH_MARGIN)
         ]
+
+
+def _rise(arm: ArmMotions, joints: Vector, height: int, falling: int, scene: Scene) -> list[Segment]:
+    """From before the pile upwards until the fingertips are above what may have fallen; nothing where they are.
+
+    Nor where the arm cannot: it then stays where it was, and what is planned from there goes its own way.
+    """
+    missing = heap(falling) * arm.side + OVER_HEAP - (height - 1 + ABOVE_CUT) * arm.side
+    if missing <= 0.0:
+        return []
+    try:
+        up = arm.planner.line(joints, (0.0, 0.0, missing), scene, hand=HandState(0.0), margin=PUSH_MARGIN)
+    except ExecutionFailure:
+        return []
+    return [arm.move(up, HandState(0.0), margin=PUSH_MARGIN)]
 
 
 def _first_contact(falling: int, side: float) -> float:

@@ -21,6 +21,7 @@ from smash.execution.physics.simulated_robot import simulated_panda
 from smash.execution.physics.window import furnish, require_display, words_to_stderr
 from smash.execution.scene.block_pose import BlockPose
 from smash.execution.scene.tabletop import Tabletop
+from smash.motion.obstacles import BodyName
 from smash.motion.timing import Trajectory
 
 STEP = 1 / 480
@@ -33,6 +34,8 @@ TOOL_LINK = 11
 ARM_FORCE = (87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)
 FINGER_FORCE = 40.0
 FINGER_SPEED = 0.2
+CONTACTS_EVERY = 4
+"""Steps from one look at what the arm touches to the next."""
 ASLEEP = 1e-5
 """A block whose squared speed [m2/s2 + rad2/s2] stays below this for two seconds is left out of the simulation until
 something awake touches it or what it stands with: piles do not creep, and most of the work is spared."""
@@ -68,6 +71,10 @@ class World:
         self._target = self._sent = np.array(ready, dtype=np.float64)
         self.recorded: list[tuple[float, NDArray[np.float64], float]] = []
         """What arm [rad], shape (7,), and fingers [m from the middle] were sent to, with the time [s] of each step."""
+        self.meant: frozenset[BodyName] = frozenset()
+        """What the arm may touch at present."""
+        self._touched: dict[str, None] = {}
+        self._steps = 0
         self._after_close: Callable[[], None] | None = None
         if gui:
             require_display()
@@ -132,6 +139,7 @@ class World:
                 sleepThreshold=ASLEEP,
             )
             self.bodies[name] = body
+        self._named = {body: name for name, body in self.bodies.items()}
         self._step_simulation = c.stepSimulation
         self._send_arm = partial(c.setJointMotorControlArray, self.robot, ARM, c.POSITION_CONTROL, forces=ARM_FORCE)
         self._hold()
@@ -177,9 +185,25 @@ class World:
         self._step_simulation()
         self.time += STEP
         self.recorded.append((self.time, self._sent, self.opening))
+        self._steps += 1
+        if self._steps % CONTACTS_EVERY == 0:
+            self._note_contacts()
         if self._on_frame is not None and self.time >= self._next_frame:
             self._next_frame += self._frame_interval
             self._on_frame(self)
+
+    def _note_contacts(self) -> None:
+        """Remember the blocks that arm or hand touch and are not meant to."""
+        for point in self.client.getContactPoints(bodyA=self.robot):
+            block = self._named.get(point[2])
+            if block is not None and block not in self.meant and point[8] <= 0.0:
+                self._touched[block] = None
+
+    def touched(self) -> list[str]:
+        """The blocks that the arm has touched unmeant since this was last asked, in the order in which it did."""
+        blocks = list(self._touched)
+        self._touched.clear()
+        return blocks
 
     def follow(self, trajectory: Trajectory, opening: float | None = None) -> None:
         """Let the arm follow a trajectory; the fingers go to `opening` [m from the middle] meanwhile, if given."""

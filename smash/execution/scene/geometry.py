@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from smash.execution.scene.area import Area
 from smash.execution.scene.block_pose import BlockPose
 from smash.execution.scene.tabletop import Slot
 
@@ -18,12 +19,14 @@ class Geometry:
         stations: The slot of every station.
         blocks: Poses of the blocks, as far as they are known.
         carriers: Poses of the carriers.
+        areas: Where the other blocks may be: those that were toppled before anybody saw where they landed.
     """
 
     slots: Mapping[str, Slot]
     stations: Mapping[str, Slot] = field(default_factory=dict)
     blocks: dict[str, BlockPose] = field(default_factory=dict)
     carriers: dict[str, BlockPose] = field(default_factory=dict)
+    areas: tuple[Area, ...] = ()
 
     def seen(self, blocks: Mapping[str, BlockPose], carriers: Mapping[str, BlockPose]) -> Geometry:
         """The same table with these poses."""

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from smash.execution.actions.arm_motions import ArmMotions, Segment
+from smash.execution.actions.grasps import CENTRED
 from smash.execution.actions.topple import topple
 from smash.execution.grounding import Grounder
 from smash.execution.scene.geometry import Geometry
@@ -131,10 +132,11 @@ def _pick_and_place(
     target = str(generator.choice([q for q in instance.locations if not instance.start[q] or piles[q][-1] != block]))
     grounder, scene = Grounder(arm), arm.scene(where.blocks)
     begun = process_time()
-    lifted = _count("pick", begun, grounder.pick_and_place.pick(READY, block, where.blocks[block], scene), scene, tally)
+    segments, grasp = grounder.pick_and_place.pick(READY, block, where.blocks[block], scene)
+    lifted = _count("pick", begun, segments, scene, tally)
     stand = grounder.stand(target, State.start_of(instance), where)
     begun = process_time()
-    way = grounder.pick_and_place.landing(lifted, block, stand, scene)
+    way = grounder.pick_and_place.landing(lifted, block, stand, scene, grasp)
     _count("place", begun, grounder.pick_and_place.place(lifted, block, way, scene), scene, tally)
 
 
@@ -171,8 +173,8 @@ def compare_checkers(states: int, seed: int) -> Counter[tuple[bool, bool]]:
     """(free by the spheres, free by the hulls) of random configurations on a random table, a block in the hand."""
     generator = np.random.default_rng(seed)
     arm = ArmMotions(default_scene())
-    scene = arm.scene(random_table(generator, 9)[1].blocks)
-    fast, exact = CollisionChecker(scene, arm.holding, 0.0), HullChecker(scene, arm.holding, 0.0)
+    scene, hand = arm.scene(random_table(generator, 9)[1].blocks), CENTRED.hand(arm.side)
+    fast, exact = CollisionChecker(scene, hand, 0.0), HullChecker(scene, hand, 0.0)
     verdicts: Counter[tuple[bool, bool]] = Counter()
     for joints in generator.uniform(LOWER, UPPER, (states, 7)):
         verdicts[fast.free(joints), exact.contact(joints) is None] += 1
