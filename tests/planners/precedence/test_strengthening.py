@@ -26,9 +26,10 @@ def at_once(monkeypatch):
     monkeypatch.setattr(HittingSetSolver, "_dive", only_of_whole_values)
 
 
+@pytest.mark.usefixtures("at_once")
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("options", [PlanOptions(topple=False), PlanOptions(max_topple=1)])
-def test_small_graphs_end_at_the_cheapest_of_all_sets(seed, options, kernels, at_once):
+def test_small_graphs_end_at_the_cheapest_of_all_sets(seed, options, kernels):
     graph = build_graph(Problem(wide(11, 4, seed), options))
     solver = HittingSetSolver(graph)
     found = solver.solve(math.inf)
@@ -36,7 +37,8 @@ def test_small_graphs_end_at_the_cheapest_of_all_sets(seed, options, kernels, at
     assert found.bound == solver.cost(found.chosen) == cheapest_hitting_cost(graph)
 
 
-def test_a_gap_of_the_cycles_is_closed_by_rank_inequalities(kernels, at_once):
+@pytest.mark.usefixtures("at_once")
+def test_a_gap_of_the_cycles_is_closed_by_rank_inequalities(kernels):
     graph = build_graph(Problem(wide(120, 20, seed=1), PlanOptions(topple=False)))
     bounds = []
     solver = HittingSetSolver(graph, on_bound=bounds.append)
