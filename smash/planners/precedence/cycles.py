@@ -6,6 +6,7 @@ block c costs how far c is freed; with b's own back edge it closes a cycle (`ker
 
 from __future__ import annotations
 
+from collections import Counter
 from time import perf_counter
 from typing import Any
 
@@ -17,6 +18,9 @@ from smash.planners.precedence.kernels.paths import NONE, Events, Work
 
 TIE = 1e-6
 """Added to each back edge, so that of two equally cheap paths the one through fewer blocks is taken."""
+
+MOST_OF_A_PILE = 4
+"""Cycles through one start pile at a time where a topple frees many of its blocks at once: their rows are much alike."""
 
 
 class CycleFinder:
@@ -38,6 +42,7 @@ class CycleFinder:
         self._events = Events(under, first, following, moves)
         self._work = Work([0] * size, [0] * size, [NONE] * size, [0.0] * (size + 1), [NONE] * (size + 1), [0])
         self._searches = 0
+        self._most = MOST_OF_A_PILE if len(graph.choices) < len(self.sources) else size
         self._kernels = INTERPRETED
 
     def use(self, kernels: Kernels) -> None:
@@ -50,6 +55,8 @@ class CycleFinder:
     def violated(self, freedom: Floats, below: float, deadline: float = np.inf) -> list[tuple[int, ...]]:
         """Return cycles whose blocks' freedom sums to less than `below`, each as the blocks of its back edges.
 
+        If there are any, some are found, through each block or through others of its pile.
+
         Args:
             freedom: per block, how far it is freed (`PrecedenceGraph.freedom`).
             below: the sum from which on a cycle is not violated.
@@ -60,14 +67,18 @@ class CycleFinder:
             weight = weight.tolist()
         candidates = self.sources[freedom[self.sources] < below]
         found: dict[frozenset[int], tuple[float, tuple[int, ...]]] = {}
+        through: Counter[int] = Counter()
         for source in candidates.tolist():
             if perf_counter() > deadline:
                 break
+            if through[self._pile_of[source]] >= self._most:
+                continue
             self._searches += 1
             if self._kernels.cheapest_cycle(self._events, self._work, weight, source, below, self._searches):
                 cycle = self._cycle(source)
                 total = float(freedom[list(cycle)].sum())
                 if total < below:
+                    through[self._pile_of[source]] += 1
                     found.setdefault(frozenset(cycle), (total, cycle))
         return [cycle for _, cycle in sorted(found.values())]
 

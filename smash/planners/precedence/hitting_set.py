@@ -30,8 +30,9 @@ ROUNDINGS = 40
 """Random roundings of the LP solution from which rows are taken before the integer solves."""
 INTERPRETED_SECONDS, INTERPRETED_BLOCKS = 0.5, 500
 """How long, and with how many blocks, the kernels are interpreted: what ends sooner needs no library to be loaded."""
-COMPILE_SECONDS = 1.5
-"""How long to wait for the compiled kernels: their machine code is loaded by then, unless it must be made."""
+COMPILE_SECONDS, MOST_COMPILE_SECONDS = 1.5, 30.0
+"""How long to wait for the compiled kernels: their machine code is loaded by then, unless it must be made; and where
+nothing can be done without."""
 QUICK_SECONDS, QUICK_CHOICES = 1.0, 150
 """For integer solves on the cycles alone, and with how many choices they have a chance."""
 ROUNDS = ((10, 15), (12, 15), (14, 400))
@@ -165,7 +166,8 @@ class HittingSetSolver:
         """Cut the LP relaxation until no cycle is violated; whether that was reached in time."""
         while perf_counter() < deadline:
             if not self._kernels.compiled and perf_counter() > self._compile_from:
-                self._compile(min(COMPILE_SECONDS, deadline - perf_counter()))
+                many = len(self.graph.blocks) > INTERPRETED_BLOCKS
+                self._compile(min(MOST_COMPILE_SECONDS if many else COMPILE_SECONDS, 0.2 * (deadline - perf_counter())))
                 self._compile_from = perf_counter() + COMPILE_SECONDS
             values = self._relaxation.values
             for cycle in self.finder.violated(self.graph.freedom(values), below, deadline):
@@ -189,7 +191,7 @@ class HittingSetSolver:
         turns = turn_graph(self.graph)
         if turns is None or len(turns.free) == 0:
             return
-        self._compile(min(10 * COMPILE_SECONDS, 0.1 * (deadline - perf_counter())))
+        self._compile(min(MOST_COMPILE_SECONDS, 0.2 * (deadline - perf_counter())))
         if not self._kernels.compiled:
             return
         from smash.planners.precedence.annealing import Annealing
