@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from smash.planners.astar import bound, layer, moves, search, state
+from smash.planners.astar import bound, layer, moves, patterns, search, state
 from smash.planners.compiling import compiled_functions
 
-MODULES = (state, bound, moves, search, layer)
+MODULES = (state, bound, moves, patterns, search, layer)
 
 
 class Code(NamedTuple):
@@ -23,6 +23,7 @@ class Code(NamedTuple):
     file_again: Callable[..., None]
     expand_some: Callable[..., int]
     expand_layer: Callable[..., int]
+    spread: Callable[..., int]
 
 
 INTERPRETED = Code(
@@ -35,6 +36,7 @@ INTERPRETED = Code(
     search.file_again,
     search.expand_some,
     layer.expand_layer,
+    patterns.spread,
 )
 
 

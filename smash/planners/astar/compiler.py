@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
 from smash.planners.astar.compiled import compiled_code
 from smash.planners.astar.engine import StoreEngine
+from smash.planners.astar.pattern_sets import PatternBuilder
 from smash.planners.astar.store import filled
 from smash.planners.astar.task import make_setting
 from smash.planners.compiling import CompiledOnce
@@ -30,5 +33,6 @@ class Compiler(CompiledOnce):
         engine.code.file_again(engine.task, engine.store)
         numbers = filled([0], True)
         engine.code.expand_layer(engine.task, engine.cells, engine.start_row(), numbers, numbers, engine.store, 0, 0)
+        PatternBuilder(problem, engine.code).table((0,), math.inf)
         engine.code.file_node(engine.task, engine.cells, engine.store, -1, 0, -1, 0, 0)
         cls._code = engine.code

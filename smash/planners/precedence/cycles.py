@@ -20,7 +20,7 @@ TIE = 1e-6
 """Added to each back edge, so that of two equally cheap paths the one through fewer blocks is taken."""
 
 MOST_OF_A_PILE = 4
-"""Cycles through one start pile at a time where a topple frees many of its blocks at once: their rows are much alike."""
+"""Cycles through one start pile at a time where a topple frees many of its blocks at once: their rows are alike."""
 
 
 class CycleFinder:
