@@ -30,8 +30,8 @@ FLOORS = {
 """Room -> the rooms that it may import from, wherever in a module it does; `smash` is the door itself."""
 ORDERS = {
     "smash.planners": (
-        *("protocol", "registry", "milp", "greedy", "precedence", "astar", "layered", "flow", "former"),
-        "portfolio",
+        *("protocol", "registry", "compiling", "milp", "greedy", "precedence", "astar", "warm"),
+        *("layered", "flow", "former", "portfolio"),
     ),
     "smash.records": ("outcomes", "locking", "record", "runs", "episodes", "trials", "files", "reading", "writing"),
     "smash.experiments": (

@@ -151,6 +151,7 @@ class _Parts:
         if self._beam is None:
             self._beam = BeamSearch(problem.numbered, problem.options, _cost(log), self.settings.seed)
         beam = self._beam
+        beam.patterns = self._search.patterns if self._search is not None else None
         beam.lower_upper(_cost(log))
         while (steps := beam.run(until)) is not None:
             log.offer(problem.numbered.actions(steps), "beam")

@@ -12,6 +12,7 @@ from typing import Any
 
 from smash.planners.astar.compiler import Compiler
 from smash.planners.astar.engine import Engine, Move
+from smash.planners.astar.pattern_sets import Patterns
 from smash.planners.astar.search import BEST, NODES, UPPER, Store
 from smash.planners.astar.store import free_memory, grown, make_store, most_nodes
 from smash.planners.astar.task import Setting, make_setting
@@ -41,6 +42,7 @@ class BeamSearch:
         upper: what plans have to be cheaper than.
         ended: why the search is over (`proven`: no plan is cheaper than `upper`; or what it cannot take), or None.
         width: of the layers of the pass that runs, or ran last.
+        patterns: databases that bound the cost in the passes that begin from now on.
     """
 
     def __init__(
@@ -52,6 +54,7 @@ class BeamSearch:
         self.width = FIRST_WIDTH
         self._seed = seed
         self._memory = memory
+        self.patterns: Patterns | None = None
         self._setting = make_setting(problem, options)
         self._pass: _Pass | None = None
         if self._setting is None:
@@ -86,7 +89,7 @@ class BeamSearch:
         assert self._setting is not None
         if self._memory is None:
             self._memory = min(free_memory(), MOST_MEMORY)
-        self._pass = _Pass(self._setting, code, self.upper, self.width, self._memory, self._seed)
+        self._pass = _Pass(self._setting, code, self.upper, self.width, self._memory, self._seed, self.patterns)
         return self._pass
 
     def _finish(self, running: _Pass) -> None:
@@ -119,7 +122,16 @@ class _Pass:
         cramped: whether that was for want of memory.
     """
 
-    def __init__(self, setting: Setting, code: Any, upper: int, width: int, memory: int, seed: int) -> None:
+    def __init__(
+        self,
+        setting: Setting,
+        code: Any,
+        upper: int,
+        width: int,
+        memory: int,
+        seed: int,
+        patterns: Patterns | None = None,
+    ) -> None:
         import numpy as np
 
         self.engine = Engine(setting, code, compiled=True)
@@ -127,7 +139,7 @@ class _Pass:
         self._width = width
         self._most = most_nodes(setting.task.blocks, memory)
         self._draw = np.random.default_rng(seed)
-        self._store: Store = make_store(setting.task, True, min(FIRST_NODES, self._most), upper, upper)
+        self._store: Store = make_store(setting.task, True, min(FIRST_NODES, self._most), upper, upper, patterns)
         self.engine.unpack_start()
         code.file_node(setting.task, self.engine.cells, self._store, -1, 0, -1, 0, 0)
         self._rows: Any = np.zeros(0, dtype="u1")

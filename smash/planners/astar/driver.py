@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from time import perf_counter
 
-from smash.planners.astar.compiled import INTERPRETED
+from smash.planners.astar.compiled import INTERPRETED, Code
 from smash.planners.astar.compiler import Compiler
 from smash.planners.astar.engine import StoreEngine
+from smash.planners.astar.pattern_sets import PatternBuilder, Patterns, takes_patterns
 from smash.planners.astar.search import BEST, EXPANDED, FLOOR, FULL, PROVEN, UPPER
 from smash.planners.astar.store import free_memory, grown, most_nodes
 from smash.planners.astar.task import make_setting
@@ -23,6 +25,10 @@ MOST_INTERPRETED = 100_000
 FIRST_NODES = 1 << 16
 MOST_BUCKETS = 1 << 24
 """Beyond this the plan known is so far from the bound that no search can close the gap."""
+PATTERN_AFTER = 1.0
+"""Seconds of the compiled search before pattern databases are built: smaller searches end sooner without them."""
+PATTERN_SHARE, PATTERN_SECONDS = 0.15, 40.0
+"""Share of the time left, and most seconds, for building them; the search starts anew with them."""
 INTERPRETED_BLOCKS = 30
 """With more blocks one expansion takes too long to be interpreted."""
 
@@ -41,6 +47,7 @@ class StateSearch:
         lower_bound: what no plan is cheaper than, so far.
         ended: why the search is over (`proven`, `memory`, or what it cannot take), or None.
         expanded: nodes expanded.
+        patterns: the pattern databases that bound the cost too, once they are built.
     """
 
     def __init__(
@@ -56,6 +63,9 @@ class StateSearch:
         self.lower_bound = 0
         self.ended: str | None = None
         self.expanded = 0
+        self.patterns: Patterns | None = None
+        self._patterns_from = math.inf
+        self._patterned = takes_patterns(problem, options)
         self._interpreted = problem.blocks <= INTERPRETED_BLOCKS
         self._memory = free_memory() if memory is None else memory
         setting = make_setting(problem, options)
@@ -79,6 +89,8 @@ class StateSearch:
         while self.ended is None:
             if not self._ready(deadline, may_compile):
                 return None
+            if perf_counter() > self._patterns_from:
+                self._build_patterns(deadline)
             engine = self._engine
             outcome = engine.expand()
             self._prove(min(engine.counter(FLOOR), engine.counter(UPPER)))
@@ -137,9 +149,24 @@ class StateSearch:
         code = Compiler.code(deadline)
         if code is None:
             return False
+        if self._patterned:
+            self._patterns_from = perf_counter() + PATTERN_AFTER
+        self._start_anew(code)
+        return True
+
+    def _build_patterns(self, deadline: float) -> None:
+        """Build pattern databases, and start anew with them."""
+        self._patterns_from = math.inf
+        code = self._engine.code
+        seconds = min(PATTERN_SECONDS, PATTERN_SHARE * (deadline - perf_counter()))
+        self.patterns = PatternBuilder(self.problem, code).build(perf_counter() + seconds)
+        if self.patterns is not None:
+            self._start_anew(code)
+
+    def _start_anew(self, code: Code) -> None:
         # A plan that filing the start gave, and that nobody has heard of, is to be found again.
         unheard = self._engine.counter(BEST) != self._engine.reported
         upper = self._engine.counter(UPPER) + unheard
         self._engine = StoreEngine(self._engine.setting, code, True)
+        self._engine.patterns = self.patterns
         self._engine.open(FIRST_NODES, self.lower_bound, upper)
-        return True

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from smash.planners.astar.compiled import Code
+from smash.planners.astar.pattern_sets import Patterns
 from smash.planners.astar.search import BEST, Store
 from smash.planners.astar.store import filled, make_store
 from smash.planners.astar.task import Ints, Setting
@@ -71,14 +72,16 @@ class StoreEngine(Engine):
 
     Attributes:
         reported: the best node that has been told of.
+        patterns: databases that bound the cost too.
     """
 
     reported = -1
     store: Store
+    patterns: Patterns | None = None
 
     def open(self, nodes: int, first: int, upper: int) -> None:
         """File the start in an empty store."""
-        self.store = make_store(self.task, self.compiled, nodes, first, upper)
+        self.store = make_store(self.task, self.compiled, nodes, first, upper, self.patterns)
         self.unpack_start()
         self.code.file_state(self.task, self.cells, self.store, -1, 0, -1, 0)
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from smash.planners.astar.bound import lower_bound
 from smash.planners.astar.moves import list_moves
+from smash.planners.astar.patterns import pattern_bound
 from smash.planners.astar.state import apply_move, is_goal, pack, settle, unpack
 from smash.planners.astar.task import Ints, Task
 
@@ -39,6 +40,9 @@ class Store(NamedTuple):
     shape: Ints
     """[0]: the least cost possible (a plan that cheap is found deepest first); [1]: width of the buckets;
     [2]: the most nodes; [3]: size of `table`."""
+    layout: Ints
+    tables: Ints
+    """Of the pattern databases (`patterns.pattern_bound`)."""
 
 
 def file_state(task: Task, cells: Ints, store: Store, parent: int, cost: int, moved: int, code: int) -> bool:
@@ -69,6 +73,8 @@ def file_node(task: Task, cells: Ints, store: Store, parent: int, cost: int, mov
     cost += 2 * settle(task, cells)
     counters = store.counters
     estimate = max(cost + lower_bound(task, cells), least)
+    if estimate < counters[UPPER] and store.layout[0] > 0:
+        estimate = max(estimate, cost + pattern_bound(task, cells, store.layout, store.tables))
     if estimate >= counters[UPPER]:
         return DROPPED
     blocks = task.blocks

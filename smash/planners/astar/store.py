@@ -7,6 +7,7 @@ from typing import Any
 
 from smash.planners.astar import search
 from smash.planners.astar.compiled import Code
+from smash.planners.astar.pattern_sets import Patterns
 from smash.planners.astar.search import Store
 from smash.planners.astar.task import Ints, Task
 
@@ -49,8 +50,20 @@ def filled(values: list[int], compiled: bool, kind: str = "i8") -> Ints:
     return array
 
 
-def make_store(task: Task, compiled: bool, nodes: int, first: int, upper: int) -> Store:
-    """Return an empty store for `nodes` nodes with estimates from `first` up to `upper`."""
+def make_store(
+    task: Task, compiled: bool, nodes: int, first: int, upper: int, patterns: Patterns | None = None
+) -> Store:
+    """Return an empty store for `nodes` nodes with estimates from `first` up to `upper`.
+
+    Args:
+        task: the problem's numbers.
+        compiled: whether compiled functions will use it.
+        nodes: the most that fit.
+        first: the least estimate.
+        upper: the cost that plans have to be below.
+        patterns: databases that bound the cost beside `lower_bound`.
+    """
+    patterns = patterns or Patterns.none(compiled)
     table = table_size(nodes)
     width = upper + 1
     sizes = {"states": nodes * task.blocks, "table": table, "heads": (upper - first + 1) * width, "counters": 5}
@@ -58,7 +71,8 @@ def make_store(task: Task, compiled: bool, nodes: int, first: int, upper: int) -
         name: zeros(sizes.get(name, nodes), kind, compiled, -1 if name == "heads" else 0)
         for name, kind in KINDS.items()
     }
-    store = Store(**arrays, shape=filled([first, width, nodes, table], compiled))
+    shape = filled([first, width, nodes, table], compiled)
+    store = Store(**arrays, shape=shape, layout=patterns.layout, tables=patterns.tables)
     store.counters[search.UPPER] = upper
     store.counters[search.BEST] = -1
     store.counters[search.FLOOR] = first

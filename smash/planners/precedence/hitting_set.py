@@ -1,7 +1,7 @@
-"""The cheapest choices that hit every cycle: cuts on the LP relaxation, then on integer solutions (HiGHS).
+"""The cheapest choices that hit every cycle: cuts on the LP relaxation, then on integer solutions.
 
-Rows are added as cycles are found violated. HiGHS 1.15 can hang in a warm-started LP after new rows
-(seen at 200 blocks), so the solver's state is cleared before each re-solve; the LPs are small.
+Rows are added as cycles are found violated. Where each block is put aside by itself the choices are a directed feedback
+vertex set; if a second does not settle that, an annealed set and rank inequalities come before the integer solves.
 """
 
 from __future__ import annotations
@@ -10,21 +10,45 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from time import perf_counter
+from typing import TYPE_CHECKING
 
-import highspy
 import numpy as np
 
-from smash.planners.milp.solvers import highs
+from smash.planners.precedence.compiled import INTERPRETED, Kernels
 from smash.planners.precedence.cycles import CycleFinder
 from smash.planners.precedence.dive import EventOrder, dive
 from smash.planners.precedence.graph import Floats, PrecedenceGraph
+from smash.planners.precedence.relaxation import Relaxation, Row
+
+if TYPE_CHECKING:
+    from smash.planners.precedence.ranks import RankFinder
 
 TOLERANCE = 1e-6
 DIVE_SECONDS = 0.3
 """Longest time for making one feasible choice cheaper."""
 ROUNDINGS = 40
 """Random roundings of the LP solution from which rows are taken before the integer solves."""
-Row = frozenset[int]
+INTERPRETED_SECONDS, INTERPRETED_BLOCKS = 0.5, 500
+"""How long, and with how many blocks, the kernels are interpreted: what ends sooner needs no library to be loaded."""
+COMPILE_SECONDS, MOST_COMPILE_SECONDS = 1.5, 30.0
+"""How long to wait for the compiled kernels: their machine code is loaded by then, unless it must be made; and where
+nothing can be done without."""
+QUICK_SECONDS, QUICK_CHOICES = 1.0, 150
+"""For integer solves on the cycles alone, and with how many choices they have a chance."""
+ROUNDS = ((10, 15), (12, 15), (14, 400))
+"""The largest sets of the rank inequalities, and the most rounds with each."""
+TRIES = 3
+"""Sets grown from one block in a round."""
+STALL_ROUNDS, STALL = 6, 5e-4
+"""Sets grow larger where so many rounds raised the bound by no more than this share."""
+SLACK = 0.2
+"""Rows exceeded by more are dropped between rounds; sets grow along the others."""
+LONGEST = 8
+"""Of the cycles along which sets grow."""
+MOVES = 10_000
+"""Moves of one annealing, per block."""
+ANNEALINGS, ANNEAL_SHARE, RANK_SHARE = 4, 0.15, 0.4
+"""How many there are, and the shares of the time left that they and the rank inequalities may take."""
 
 
 @dataclass(slots=True)
@@ -36,14 +60,14 @@ class HittingSet:
         chosen: the cheapest hitting set found.
         rows: the cycles (and forced topples) found, as sets of choices of which one must be taken.
         cycles: for each row the blocks of its back edges (a single loose block for a forced topple).
-        rounds: LP and MIP solves.
+        rounds: LP and MIP solves, and rank inequalities.
     """
 
     bound: int
     chosen: set[int]
     rows: list[Row] = field(default_factory=list)
     cycles: list[tuple[int, ...]] = field(default_factory=list)
-    rounds: dict[str, int] = field(default_factory=lambda: {"lp": 0, "mip": 0})
+    rounds: dict[str, int] = field(default_factory=lambda: {"lp": 0, "mip": 0, "ranks": 0})
 
 
 class HittingSetSolver:
@@ -58,18 +82,18 @@ class HittingSetSolver:
         self.graph = graph
         self._on_bound = on_bound
         self.finder = CycleFinder(graph)
+        self._kernels = INTERPRETED
+        self._compile_from = math.inf
         self._order = EventOrder(graph)
         self._costs = graph.costs
         costs = [choice.cost for choice in graph.choices]
         self._unit = math.gcd(*costs) if costs else 1
-        self._threads = threads
         self._uses = np.zeros(len(costs))
-        self._known: dict[Row, tuple[int, ...]] = {}
-        self._rows_sent = 0
+        self._known: set[Row] = set()
         self._started = False
         self._report: Callable[[set[int]], None] | None = None
         self.state = HittingSet(0, set())
-        self._model = self._new_model()
+        self._relaxation = Relaxation(self._costs, threads)
         for block in graph.must_free:
             self._add_row((block,))
 
@@ -84,11 +108,14 @@ class HittingSetSolver:
         self._report = on_choice
         if not self._started:
             self.start(deadline)
-        if self._proven():
+        many = len(self.graph.blocks) > INTERPRETED_BLOCKS
+        self._compile_from = perf_counter() + (0.0 if many else INTERPRETED_SECONDS)
+        if self._proven() or not self._relax(deadline):
             return self.state
-        values = self._relax(deadline)
-        if values is not None and not self._proven():
-            self._round(values, deadline)
+        if len(self._costs) <= QUICK_CHOICES and not self._proven():
+            self._integrate(min(deadline, perf_counter() + QUICK_SECONDS))
+        if not self._proven():
+            self._strengthen(deadline)
             self._integrate(deadline)
         return self.state
 
@@ -109,102 +136,110 @@ class HittingSetSolver:
                 self._report(chosen)
 
     def _raise_bound(self, value: float) -> None:
+        if not math.isfinite(value):
+            return
         units = math.ceil(value / self._unit - TOLERANCE)
         if units * self._unit > self.state.bound:
             self.state.bound = units * self._unit
             if self._on_bound is not None:
                 self._on_bound(self.state.bound)
 
-    def _new_model(self) -> highspy.Highs:
-        model = highspy.Highs()
-        model.silent()
-        model.setOptionValue("threads", self._threads)
-        model.setOptionValue("random_seed", 1)
-        count = len(self._costs)
-        if count:
-            model.addCols(count, self._costs, np.zeros(count), np.ones(count), 0, [], [], [])
-        return model
-
     def _add_row(self, cycle: tuple[int, ...]) -> bool:
         row = self.graph.row(cycle)
-        if row in self._known:
-            return False
-        self._known[row] = cycle
-        self._uses[list(row)] += 1
-        self.state.rows.append(row)
-        self.state.cycles.append(cycle)
-        return True
+        if row not in self._known:
+            self._known.add(row)
+            self._uses[list(row)] += 1
+            self.state.rows.append(row)
+            self.state.cycles.append(cycle)
+        return self._relaxation.add(row)
 
-    def _send_rows(self) -> None:
-        fresh = self.state.rows[self._rows_sent :]
-        if not fresh:
-            return
-        lengths = [len(row) for row in fresh]
-        starts = np.concatenate(([0], np.cumsum(lengths)[:-1])).astype(np.int32)
-        columns = np.array([column for row in fresh for column in sorted(row)], dtype=np.int32)
-        count = len(fresh)
-        infinity = np.full(count, highspy.kHighsInf)
-        self._model.addRows(count, np.ones(count), infinity, len(columns), starts, columns, np.ones(len(columns)))
-        self._rows_sent = len(self.state.rows)
+    def _compile(self, wait: float) -> None:
+        """Take the compiled kernels if they are there within `wait` seconds."""
+        from smash.planners.precedence.compiler import GraphCompiler
 
-    def _run(self, deadline: float, known: set[int] | None = None) -> bool:
-        """Solve the model as it stands, from a `known` hitting set; whether the solver ended with an optimum."""
-        left = deadline - perf_counter()
-        if left <= 0:
-            return False
-        self._model.clearSolver()
-        self._model.setOptionValue("time_limit", left)
-        if known is not None:
-            solution = highspy.HighsSolution()
-            solution.col_value = [float(choice in known) for choice in range(len(self._costs))]
-            self._model.setSolution(solution)
-        highs.run(self._model)
-        return bool(self._model.getModelStatus() == highspy.HighsModelStatus.kOptimal)
+        kernels: Kernels | None = GraphCompiler.code(perf_counter() + wait)
+        if kernels is not None:
+            self._kernels = kernels
+            self.finder.use(kernels)
 
-    def _relax(self, deadline: float) -> Floats | None:
-        """Cut the LP relaxation until no cycle is violated; the LP's solution, or None where time ran out."""
-        values = np.zeros(len(self._costs))
+    def _relax(self, deadline: float, below: float = 1.0 - 1e-3) -> bool:
+        """Cut the LP relaxation until no cycle is violated; whether that was reached in time."""
         while perf_counter() < deadline:
-            cycles = self.finder.violated(self.graph.freedom(values), 1.0 - 1e-3, deadline)
-            if sum([self._add_row(cycle) for cycle in cycles]) == 0 and self._rows_sent == len(self.state.rows):
-                return values
-            self._send_rows()
-            if not self._run(deadline):
-                return None
+            if not self._kernels.compiled and perf_counter() > self._compile_from:
+                many = len(self.graph.blocks) > INTERPRETED_BLOCKS
+                self._compile(min(MOST_COMPILE_SECONDS if many else COMPILE_SECONDS, 0.2 * (deadline - perf_counter())))
+                self._compile_from = perf_counter() + COMPILE_SECONDS
+            values = self._relaxation.values
+            for cycle in self.finder.violated(self.graph.freedom(values), below, deadline):
+                self._add_row(cycle)
+            if not self._relaxation.waiting:
+                return True
+            if not self._relaxation.solve(deadline):
+                return False
             self.state.rounds["lp"] += 1
-            values = np.array(self._model.getSolution().col_value)
-            self._raise_bound(self._model.getInfo().objective_function_value)
-            self._offer(self._dive(values, deadline))
+            self._raise_bound(self._relaxation.objective)
+            if below > 0.99:
+                self._offer(self._dive(self._relaxation.values, deadline))
             if self._proven():
-                return values
-        return None
+                return True
+        return False
 
-    def _round(self, values: Floats, deadline: float) -> None:
-        """Add the cycles that roundings of the LP solution leave: integer solves would ask for them one by one."""
-        draw = np.random.default_rng(0)
-        for _ in range(ROUNDINGS):
-            self._cut_off((values > draw.uniform(0.0, 1.0, len(values))).astype(float), deadline)
+    def _strengthen(self, deadline: float) -> None:
+        """Bring bound and cost nearer to each other, where the choices are blocks: annealing, rank inequalities."""
+        from smash.planners.precedence.turns import turn_graph
+
+        turns = turn_graph(self.graph)
+        if turns is None or len(turns.free) == 0:
+            return
+        self._compile(min(MOST_COMPILE_SECONDS, 0.2 * (deadline - perf_counter())))
+        if not self._kernels.compiled:
+            return
+        from smash.planners.precedence.annealing import Annealing
+        from smash.planners.precedence.ranks import RankFinder
+
+        until = _share(deadline, ANNEAL_SHARE)
+        for seed in range(ANNEALINGS):
+            if perf_counter() < until and not self._proven():
+                self._offer(Annealing(turns, self._kernels, seed).run(MOVES * len(turns.free), until))
+        self._rank(RankFinder(turns, self._kernels), _share(deadline, RANK_SHARE), deadline)
+
+    def _rank(self, finder: RankFinder, until: float, deadline: float) -> None:
+        """Add rank inequalities of growing sets; each round cuts the relaxation by cycles again."""
+        relaxation = self._relaxation
+        for most, rounds in ROUNDS:
+            bounds: list[float] = []
+            for _ in range(rounds):
+                if self._proven() or perf_counter() > until:
+                    return
+                rows = relaxation.tight(SLACK, LONGEST)
+                for attempt in range(TRIES):
+                    for row, needed in finder.violated(relaxation.values, rows, most, 0.5 + attempt, until):
+                        self.state.rounds["ranks"] += relaxation.add(row, needed)
+                if not self._relax(deadline, 0.98):
+                    return
+                relaxation.drop_slack(SLACK)
+                bounds.append(relaxation.objective)
+                if len(bounds) > STALL_ROUNDS and bounds[-1] - bounds[-1 - STALL_ROUNDS] < STALL * bounds[-1]:
+                    break
 
     def _integrate(self, deadline: float) -> None:
-        """Solve with integer choices, adding the cycles that each solution leaves, until it leaves none."""
-        count = len(self._costs)
-        kinds = np.full(count, highspy.HighsVarType.kInteger)
-        self._model.changeColsIntegrality(count, np.arange(count, dtype=np.int32), kinds)
-        self._model.setOptionValue("mip_abs_gap", self._unit - 0.001)
-        self._model.setOptionValue("mip_rel_gap", 0.0)
-        while perf_counter() < deadline:
-            self._send_rows()
-            ended = self._run(deadline, self.state.chosen)
+        """Solve with whole choices, adding the cycles that each solution leaves, until it leaves none."""
+        self._round(deadline)
+        while perf_counter() < deadline and not self._proven():
+            values = self._relaxation.solve_whole(deadline, self.state.chosen, self._unit - 0.001, self._raise_bound)
             self.state.rounds["mip"] += 1
-            info = self._model.getInfo()
-            if math.isfinite(info.mip_dual_bound):
-                self._raise_bound(info.mip_dual_bound)
-            if self._proven() or not ended or info.primal_solution_status != 2:
+            if self._proven() or values is None:
                 return
-            values = np.round(np.array(self._model.getSolution().col_value))
             self._offer(self._dive(values, deadline))
-            if self._proven() or not self._cut_off(values, deadline):
+            if not self._proven() and not self._cut_off(values, deadline):
                 return
+
+    def _round(self, deadline: float) -> None:
+        """Add the cycles that roundings of the LP solution leave: integer solves would ask for them one by one."""
+        draw = np.random.default_rng(0)
+        values = self._relaxation.values
+        for _ in range(ROUNDINGS):
+            self._cut_off((values > draw.uniform(0.0, 1.0, len(values))).astype(float), deadline)
 
     def _cut_off(self, values: Floats, deadline: float) -> int:
         """Add the cycles that an integer solution leaves, then those that are left when these are hit, and so on."""
@@ -220,3 +255,8 @@ class HittingSetSolver:
                 if not values[row].any():
                     values[min(row, key=lambda choice: (self._costs[choice], -self._uses[choice], choice))] = 1.0
         return added
+
+
+def _share(deadline: float, share: float) -> float:
+    """Return when a share of the time left is over."""
+    return deadline - (1.0 - share) * (deadline - perf_counter())

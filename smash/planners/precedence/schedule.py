@@ -384,7 +384,7 @@ class Scheduler:
             event = agenda.pop()
             kind, name = event
             earlier = list(after.get(event, ()))
-            if kind == "P":
+            if kind == "P" and name in self.chain_of:  # a loose block that rides on a stack has no place to come
                 number, rank = self.chain_of[name], self.rank[name]
                 if rank > state.placed[number]:
                     earlier.append(("P", self.chains[number][rank - 1]))

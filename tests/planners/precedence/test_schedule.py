@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from smash.planners.precedence.dive import dive
 from smash.planners.precedence.graph import build_graph
 from smash.planners.precedence.schedule import Scheduler, chosen_of
-from smash.problem import Law, OnGoal, PlanOptions, StacksGoal, make_instance
+from smash.problem import Law, OnGoal, PlanOptions, PositionsGoal, StacksGoal, make_instance
 from smash.problem.problem import Problem
 from tests.arrangements import wide
 from tests.strategies import instances, plan_options
@@ -69,3 +69,15 @@ def test_a_base_of_relations_is_put_at_an_empty_location():
     )
     plan, cost = scheduled(instance, PlanOptions(topple=False))
     assert len(plan) == cost == 4
+
+
+def test_a_block_that_the_goal_does_not_name_may_ride_on_a_stack_that_is_toppled():
+    instance = make_instance(
+        {"s1": ("b3",), "u1": ("b2", "b4", "b1")},
+        PositionsGoal({"b2": ("s1", 1), "b3": ("s1", 2), "b4": ("s1", 3)}),
+        name="x",
+        stacks=["s1"],
+        buffers=["u1"],
+    )
+    plan, cost = scheduled(instance, PlanOptions(max_topple=2))
+    assert plan is None or len(plan) == cost

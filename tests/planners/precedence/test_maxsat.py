@@ -1,0 +1,50 @@
+"""The fewest blocks put aside, proven a second time by core-guided MaxSAT."""
+
+import math
+import random
+from time import perf_counter
+
+import pytest
+
+from smash.planners.precedence.graph import build_graph
+from smash.planners.precedence.hitting_set import HittingSetSolver
+from smash.problem import PlanOptions
+from smash.problem.problem import Problem
+from smash.problem.sets.open_instances import Shape, draw_instance
+from tests.planners.precedence.events import hits_all
+
+pytest.importorskip("pysat", reason="python-sat of the extra `dev` is not installed")
+
+from tests.planners.precedence.maxsat import fewest_aside
+
+
+def drawn(blocks, stacks, seed):
+    """Draw as the study `fewest_aside` does, with as many buffers as blocks."""
+    name = f"aside-{blocks}-{stacks}-{seed}"
+    instance = draw_instance(name, Shape(blocks, stacks, blocks), random.Random(name))
+    return build_graph(Problem(instance, PlanOptions(topple=False)))
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(("blocks", "stacks"), [(20, 3), (60, 8)])
+def test_two_methods_find_the_same(blocks, stacks, seed):
+    graph = drawn(blocks, stacks, seed)
+    solver = HittingSetSolver(graph)
+    found = solver.solve(math.inf)
+    assert hits_all(graph, found.chosen)
+    assert found.bound == solver.cost(found.chosen) == 2 * fewest_aside(graph)
+
+
+def test_annealing_and_rank_inequalities_prove_nothing_that_is_not_so(kernels):
+    graph = drawn(120, 12, seed=0)
+    solver = HittingSetSolver(graph)
+    found = solver.solve(perf_counter() + 30)
+    assert found.bound <= 2 * fewest_aside(graph) <= solver.cost(found.chosen)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(10))
+def test_three_hundred_blocks_on_thirty_stacks(seed, kernels):
+    graph = drawn(300, 30, seed)
+    found = HittingSetSolver(graph).solve(perf_counter() + 300)
+    assert found.bound == 2 * fewest_aside(graph)
