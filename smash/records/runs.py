@@ -74,6 +74,7 @@ class RunRecord(Record, kw_only=True, frozen=True):
     commit: Commit
     machine: Machine
     without: list[str] = msgspec.field(default_factory=list)
+    solver: str = "highs"
 
     @property
     def trace(self) -> list[tuple[float, int]]:

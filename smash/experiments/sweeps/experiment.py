@@ -19,7 +19,7 @@ from typing import TypeVar, cast
 import msgspec
 
 from smash.experiments.isolation.job import DEFAULT_MEMORY, Job
-from smash.planners.protocol import MOST_THREADS, Settings, SolveOptions
+from smash.planners.protocol import HIGHS, MOST_THREADS, SOLVERS, Settings, SolveOptions
 from smash.planners.registry import get_planner, why_unknown
 from smash.problem.actions.registry import FAMILY
 from smash.problem.buffers import with_buffers
@@ -51,12 +51,18 @@ class PlannerEntry(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     warm_start: str | None = None
     horizon: int | None = None
     threads: int = 1
+    solver: str = HIGHS
     suites: list[str] | None = None
     instances: int | None = None
     buffers: list[int] | None = None
     budgets: list[float] | None = None
     variants: list[str] | None = None
     cutoff_sample: int | None = None
+
+    @property
+    def shown(self) -> str:
+        """Its label; where none is given its name, with the solver where that is not the one of everybody."""
+        return self.label or (self.name if self.solver == HIGHS else f"{self.name} ({self.solver})")
 
 
 class Experiment(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
@@ -131,9 +137,12 @@ def check_experiment(experiment: Experiment, where: str = "experiment") -> None:
             expect(unknown is None, part, unknown or "")
         few = 1 <= entry.threads <= MOST_THREADS
         expect(few, f"{part}.threads", f"{entry.threads} is not allowed; 1 to {MOST_THREADS}")
+        allowed = f"{entry.solver!r} is not allowed; {', '.join(SOLVERS)}"
+        expect(entry.solver in SOLVERS, f"{part}.solver", allowed)
         expect(entry.horizon is None or entry.horizon >= 1, f"{part}.horizon", f"{entry.horizon} is not allowed")
         _check_grid(expect, f"{part}.", entry)
-        label, chosen = entry.label or entry.name, (entry.name, entry.warm_start, entry.horizon, entry.threads)
+        label = entry.shown
+        chosen = (entry.name, entry.warm_start, entry.horizon, entry.threads, entry.solver)
         expect(bool(label.strip()), f"{part}.label", "empty; a name for the pictures is needed")
         other = settings.setdefault(label, chosen)
         expect(other == chosen, f"{part}.label", f"{label!r} is also the label of other settings; give it another")
@@ -210,13 +219,13 @@ def _entry_runs(experiment: Experiment, entry: PlannerEntry, base: Path) -> Iter
                     assert allowed is not None
                     problem = Problem(instance, allowed)
                     for seed in experiment.seeds:
-                        settings = Settings(entry.warm_start, entry.horizon, entry.threads, seed)
+                        settings = Settings(entry.warm_start, entry.horizon, entry.threads, seed, entry.solver)
                         for budget in budgets if kind == "budget" else budgets[-1:]:
                             stands_for = (budget,) if kind == "budget" else tuple(budgets)
                             job = Job(entry.name, problem, settings, float(budget), experiment.memory)
                             yield (
                                 index,
-                                _run(experiment, entry.label or entry.name, suite, variant, kind, stands_for, job),
+                                _run(experiment, entry.shown, suite, variant, kind, stands_for, job),
                             )
 
 
@@ -236,6 +245,8 @@ def _cutoffs(run: Run) -> Iterator[Run]:
 
 def _key(label: str, suite: str, kind: RunKind, job: Job) -> str:
     asked = asdict(SolveOptions.of(job.options, job.settings))  # in one, as in the keys of earlier records
+    if job.settings.solver == HIGHS:
+        del asked["solver"]  # earlier records knew no other
     meant = [label, suite, kind, job.planner, asked, job.budget, job.memory]
     return hashlib.sha256(json.dumps([*meant, instance_hash(job.instance)]).encode()).hexdigest()[:20]
 
@@ -247,9 +258,13 @@ def instance_hash(instance: Instance) -> str:
 
 def not_installed(experiment: Experiment) -> dict[str, str]:
     """Return which of the experiment's planners cannot run here, and why."""
+    from smash.planners.milp.solvers import require_solver
+
     lacking = {}
-    for name in dict.fromkeys(entry.name for entry in experiment.planners):
+    for entry in experiment.planners:
+        name = entry.name
         try:
+            require_solver(entry.solver)
             get_planner(name)
         except Unsupported as error:
             lacking[name] = str(error)

@@ -6,6 +6,10 @@ from dataclasses import dataclass, fields, replace
 
 from smash.problem.model import PlanOptions
 
+HIGHS = "highs"
+"""The solver of a MILP where none is named."""
+SOLVERS = (HIGHS, "cpsat", "scip", "gurobi")
+"""The solvers that a planner with a MILP may be told to use."""
 MOST_THREADS = 256
 """Threads that a solver may be given; with some thousands it does nothing but start them."""
 
@@ -19,12 +23,14 @@ class Settings:
         horizon: number of time steps or layers of the time-indexed models, in place of their own choice.
         threads: most threads of a solver.
         seed: for whatever draws at random.
+        solver: solves the MILPs, one of `SOLVERS`.
     """
 
     warm_start: str | None = None
     horizon: int | None = None
     threads: int = 1
     seed: int = 0
+    solver: str = HIGHS
 
     @property
     def cold(self) -> Settings:
@@ -40,6 +46,7 @@ class SolveOptions(PlanOptions):
     horizon: int | None = None
     threads: int = 1
     seed: int = 0
+    solver: str = HIGHS
 
     @classmethod
     def of(cls, options: PlanOptions, settings: Settings) -> SolveOptions:
@@ -57,4 +64,4 @@ def settings_of(options: PlanOptions) -> Settings:
     """Return the settings that come with plan options; the defaults where none do."""
     if not isinstance(options, SolveOptions):
         return Settings()
-    return Settings(options.warm_start, options.horizon, options.threads, options.seed)
+    return Settings(options.warm_start, options.horizon, options.threads, options.seed, options.solver)
