@@ -13,7 +13,7 @@ help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
 
 needs-%: # .venv with these extras, as in needs-analysis-pddl; the packages for planning are always there
-	@.ci/environment $(VENV) $(subst -, ,$(filter-out planning,$*))
+	@.ci/environment $(VENV) $(subst cp sat,cp-sat,$(subst -, ,$(filter-out planning,$*)))
 
 physics: needs-execution
 	@$(BIN)/python -c 'import pybullet' 2>/dev/null || { echo 'smash: PyBullet has no wheels for the Python of $(VENV); make PYTHON=python3.11 $(MAKECMDGOALS)' >&2; exit 6; }
@@ -50,11 +50,11 @@ ci: ## lint, and the tests and the wheel on every Python of 3.11, 3.12 and 3.13 
 suites: needs-planning ## make the committed instance sets again, byte for byte
 	$(BIN)/python -m smash.problem.sets.make_suites
 
-ablation: needs-analysis-pddl ## the paper's budget x buffer heatmaps on a stated subset (about 12 minutes on 2 cores)
+ablation: needs-analysis-cp-sat-pddl ## the paper's budget x buffer heatmaps on a stated subset (about 12 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/ablation.toml --out runs/ablation
 	$(BIN)/python -m smash_analysis.ablation runs/ablation
 
-ablation-full: needs-analysis-pddl ## the paper's whole grid: 9 blocks, 20 instances, buffers 0 to 12, budgets to 30 s (hours)
+ablation-full: needs-analysis-cp-sat-pddl ## the paper's whole grid: 9 blocks, 20 instances, buffers 0 to 12, budgets to 30 s (hours)
 	$(BIN)/python -m smash sweep experiments/ablation-full.toml --out runs/ablation-full --dry-run
 	$(BIN)/python -m smash sweep experiments/ablation-full.toml --out runs/ablation-full
 	$(BIN)/python -m smash_analysis.ablation runs/ablation-full

@@ -16,7 +16,7 @@ from smash.cli.signals import stopped_by_signals
 from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import DEFAULT_MEMORY, Job, Report
 from smash.experiments.planning import failure
-from smash.planners.protocol import MOST_THREADS, OnIncumbent, Settings
+from smash.planners.protocol import HIGHS, MOST_THREADS, SOLVERS, OnIncumbent, Settings
 from smash.planners.registry import COMMAND, DEFAULT, why_unknown
 from smash.problem.errors import SmashError
 from smash.problem.files.documents import require_writable, write_text
@@ -56,6 +56,13 @@ from smash.problem.problem import Problem
     help="Memory limit over all of the planner's processes.",
 )
 @click.option("--warm-start", metavar="NAME", help="Planner whose plan starts a MILP model (default: cold).")
+@click.option(
+    "--solver",
+    type=click.Choice(SOLVERS),
+    default=HIGHS,
+    show_default=True,
+    help="Solver of the MILP models of smash, smash-flow and smash-layered; all but highs are extras.",
+)
 @click.option("--horizon", type=click.IntRange(min=1), metavar="T", help="Steps or layers of a time-indexed model.")
 @click.option("--threads", type=click.IntRange(1, MOST_THREADS), default=1, show_default=True, help="Solver threads.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="For planners that draw.")
@@ -72,6 +79,7 @@ def command(
     budget: float,
     memory: int,
     warm_start: str | None,
+    solver: str,
     horizon: int | None,
     threads: int,
     seed: int,
@@ -85,6 +93,7 @@ def command(
     Examples:
       smash plan examples/figure1.json
       smash plan examples/figure1.json --no-topple --planner precedence --out plan.json
+      smash plan examples/figure1.json --planner smash-flow --solver cpsat
       smash plan examples/figure1.json --estimates runs/topple-map/estimates.json
       smash plan examples/figure1.json --command 'pyperplan -s gbf {domain} {problem}' --encoding pick-and-place
     """
@@ -98,7 +107,7 @@ def command(
     if warm_start is not None and (unknown := why_unknown(warm_start)) is not None:
         raise SmashError(unknown)
     problem = Problem(read_instance(instance), PlanOptions(not no_topple, max_topple or None, without=without))
-    settings = Settings(warm_start, horizon, threads, seed, command_line, encoding)
+    settings = Settings(warm_start, horizon, threads, seed, command_line, encoding, solver)
     job = Job(planner, problem, settings, budget, memory)
     if math.isnan(budget):
         raise click.BadParameter("nan is no number of seconds", param_hint="--budget")

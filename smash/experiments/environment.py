@@ -18,6 +18,8 @@ from smash.records.record import Commit, Machine
 
 PACKAGES = (
     "smash-testbed",
+    "clingo",
+    "didppy",
     "gurobipy",
     "highspy",
     "msgspec",
@@ -25,6 +27,7 @@ PACKAGES = (
     "numpy",
     "ortools",
     "psutil",
+    "pyscipopt",
     "scipy",
     "unified-planning",
     "up-aries",

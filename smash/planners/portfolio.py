@@ -8,6 +8,8 @@ from typing import ClassVar
 from smash.planners.astar import BeamSearch, StateSearch, search_law_states
 from smash.planners.greedy import greedy_method, greedy_plans
 from smash.planners.protocol import (
+    HIGHS,
+    SOLVERS,
     Method,
     MethodPlanner,
     OnIncumbent,
@@ -64,6 +66,7 @@ class SmashPlanner(MethodPlanner):
     open_goals: ClassVar[bool] = True
     budget_dependent: ClassVar[bool] = True  # its parts get shares of the budget
     gentle: ClassVar[bool] = True
+    solvers: ClassVar[frozenset[str]] = frozenset(SOLVERS)
 
     def solve(
         self, instance: Instance, options: PlanOptions, budget: float, on_incumbent: OnIncumbent | None = None
@@ -71,6 +74,13 @@ class SmashPlanner(MethodPlanner):
         """Plan an instance, as every planner does; spelt out here, where readers of the package begin."""
         problem = Problem(instance, plan_options(options))
         return PlanResult.of(self.plan(problem, settings_of(options), budget, on_incumbent))
+
+    def load_solver(self, settings: Settings) -> None:
+        """Load a solver that is named; HiGHS is loaded when its turn comes, for most problems need none."""
+        if settings.solver != HIGHS:
+            from smash.planners.milp.solvers import load_solver
+
+            load_solver(settings)
 
     def methods(self, problem: Problem, settings: Settings) -> Sequence[Method]:
         """Return the parts in their order, which depends on the size."""

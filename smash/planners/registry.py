@@ -73,7 +73,8 @@ def make_ready(planner: Planner, name: str, problem: Problem, settings: Settings
         settings: how.
 
     Raises:
-        Unsupported: where it does not take the problem.
+        Unsupported: where it does not take the problem or the settings.
+        MissingExtra: where the solver that it is told to use is not installed.
     """
     reason = why_refused(planner, problem, settings)
     if reason:
@@ -81,6 +82,9 @@ def make_ready(planner: Planner, name: str, problem: Problem, settings: Settings
     prepare = getattr(planner, "prepare", None)
     if prepare is not None:
         prepare()
+    load_solver = getattr(planner, "load_solver", None)
+    if load_solver is not None:
+        load_solver(settings)
 
 
 def why_unknown(name: str) -> str | None:

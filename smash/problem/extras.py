@@ -14,6 +14,10 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "execution": ("pybullet", "pybullet_data", "ompl", "pinocchio", "coal", "toppra", "scipy", "meshcat", "imageio"),
     "cluster": ("dask", "distributed"),
     "gurobi": ("gurobipy", "scipy"),
+    "cp-sat": ("ortools",),
+    "scip": ("pyscipopt",),
+    "clingo": ("clingo",),
+    "didp": ("didppy",),
 }
 """Extra -> the modules that come with it."""
 

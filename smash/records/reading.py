@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic
@@ -118,9 +118,20 @@ def finished_runs(results: Path, keys: Collection[str] | None = None) -> list[Ru
     """Return the `finished` runs of a directory, or those of them that are meant.
 
     Raises:
-        MalformedFile: as `finished`.
+        MalformedFile: as `finished`, and where runs under one label are of several solvers.
     """
     runs = [run for run in finished(results, RUNS) if keys is None or run.key in keys]
     if not runs:
         raise NoRecords(str(RUNS.path(results)), f"no finished {RUNS.one}")
+    _expect_one_solver(runs, str(RUNS.path(results)))
     return runs
+
+
+def _expect_one_solver(runs: Iterable[RunRecord], where: str) -> None:
+    """Refuse runs that stand under one label and were solved by several solvers: a table would mix them."""
+    solvers: dict[str, str] = {}
+    for run in runs:
+        other = solvers.setdefault(run.label, run.solver)
+        if other != run.solver:
+            words = f"runs labelled {run.label!r} are of the solvers {other} and {run.solver}"
+            raise MalformedFile(where, f"{words}; tables do not mix solvers, give each a label of its own")

@@ -75,6 +75,7 @@ class RunRecord(Record, kw_only=True, frozen=True):
     machine: Machine
     without: list[str] = msgspec.field(default_factory=list)
     command: str | None = None
+    solver: str = "highs"
 
     @property
     def trace(self) -> list[tuple[float, int]]:

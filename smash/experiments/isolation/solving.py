@@ -19,6 +19,7 @@ from smash.experiments.isolation.job import Job
 from smash.planners.protocol import ask
 from smash.planners.registry import UnknownPlanner, get_planner, make_ready
 from smash.problem.errors import SmashError, Unsupported
+from smash.problem.extras import MissingExtra
 from smash.problem.files.plans import action_list
 from smash.problem.model import Action
 from smash.problem.plan import STATUSES, Plan
@@ -53,6 +54,8 @@ def _solve(job: Job, voice: _Voice) -> None:
         plan = ask(planner, job.problem, job.settings, job.budget, voice, name=job.planner)
     except UnknownPlanner as error:  # the one that is to warm-start it
         return voice.say(kind="failed", outcome="malformed", reason=str(error))
+    except MissingExtra as error:  # the solver that it is told to use
+        return voice.say(kind="failed", outcome="not-installed", reason=str(error))
     except Unsupported as error:
         return voice.say(kind="failed", outcome="unsupported", reason=str(error))
     seconds = perf_counter() - voice.started

@@ -20,7 +20,7 @@ import msgspec
 from smash_baselines.engines.command import check_command, program_missing
 
 from smash.experiments.isolation.job import DEFAULT_MEMORY, Job
-from smash.planners.protocol import MOST_THREADS, Settings, SolveOptions
+from smash.planners.protocol import HIGHS, MOST_THREADS, SOLVERS, Settings, SolveOptions
 from smash.planners.registry import COMMAND, get_planner, why_unknown
 from smash.problem.actions.registry import FAMILY
 from smash.problem.buffers import with_buffers
@@ -39,8 +39,8 @@ INSTANCES = "instances"
 SETS = "sets.json"
 """`RESULTS/instances/sets.json`: set -> its folder beside the list, in a directory that holds its own experiment."""
 
-_SINCE = frozenset({"command", "encoding"})
-"""Settings that keys of earlier records do not know: they are part of a key where they are given."""
+_SINCE = {"command": None, "encoding": None, "solver": HIGHS}
+"""Settings that keys of earlier records do not know, and what they were: they are part of a key where they differ."""
 
 T = TypeVar("T")
 Expect = Callable[[bool, str, str], None]
@@ -60,6 +60,7 @@ class PlannerEntry(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     threads: int = 1
     command: str | None = None
     encoding: str | None = None
+    solver: str = HIGHS
     suites: list[str] | None = None
     instances: int | None = None
     buffers: list[int] | None = None
@@ -74,7 +75,12 @@ class PlannerEntry(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
     def settings(self, seed: int = 0) -> Settings:
         """Return how it solves."""
-        return Settings(self.warm_start, self.horizon, self.threads, seed, self.command, self.encoding)
+        return Settings(self.warm_start, self.horizon, self.threads, seed, self.command, self.encoding, self.solver)
+
+    @property
+    def shown(self) -> str:
+        """Its label; where none is given its name, with the solver where that is not the one of everybody."""
+        return self.label or (self.name if self.solver == HIGHS else f"{self.name} ({self.solver})")
 
 
 class Experiment(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
@@ -150,9 +156,11 @@ def check_experiment(experiment: Experiment, where: str = "experiment") -> None:
         _check_command(expect, part, entry)
         few = 1 <= entry.threads <= MOST_THREADS
         expect(few, f"{part}.threads", f"{entry.threads} is not allowed; 1 to {MOST_THREADS}")
+        allowed = f"{entry.solver!r} is not allowed; {', '.join(SOLVERS)}"
+        expect(entry.solver in SOLVERS, f"{part}.solver", allowed)
         expect(entry.horizon is None or entry.horizon >= 1, f"{part}.horizon", f"{entry.horizon} is not allowed")
         _check_grid(expect, f"{part}.", entry)
-        label, chosen = entry.label or entry.name, (entry.planner, entry.settings())
+        label, chosen = entry.shown, (entry.planner, entry.settings())
         expect(bool(label.strip()), f"{part}.label", "empty; a name for the pictures is needed")
         other = settings.setdefault(label, chosen)
         expect(other == chosen, f"{part}.label", f"{label!r} is also the label of other settings; give it another")
@@ -248,7 +256,7 @@ def _entry_runs(experiment: Experiment, entry: PlannerEntry, base: Path) -> Iter
                             job = Job(entry.planner, problem, settings, float(budget), experiment.memory)
                             yield (
                                 index,
-                                _run(experiment, entry.label or entry.name, suite, variant, kind, stands_for, job),
+                                _run(experiment, entry.shown, suite, variant, kind, stands_for, job),
                             )
 
 
@@ -268,7 +276,7 @@ def _cutoffs(run: Run) -> Iterator[Run]:
 
 def _key(label: str, suite: str, kind: RunKind, job: Job) -> str:
     asked = asdict(SolveOptions.of(job.options, job.settings))  # in one, as in the keys of earlier records
-    asked = {name: value for name, value in asked.items() if value is not None or name not in _SINCE}
+    asked = {name: value for name, value in asked.items() if name not in _SINCE or value != _SINCE[name]}
     meant = [label, suite, kind, job.planner, asked, job.budget, job.memory]
     return hashlib.sha256(json.dumps([*meant, instance_hash(job.instance)]).encode()).hexdigest()[:20]
 
@@ -280,10 +288,13 @@ def instance_hash(instance: Instance) -> str:
 
 def not_installed(experiment: Experiment) -> dict[tuple[str, str | None], str]:
     """Return which of the experiment's planners and programs cannot run here, and why."""
+    from smash.planners.milp.solvers import require_solver
+
     lacking = {}
     for entry in experiment.planners:
         planner = (entry.planner, entry.command)
         try:
+            require_solver(entry.solver)
             get_planner(entry.planner)
             missing = None if entry.command is None else program_missing(entry.command)
             if missing is not None:

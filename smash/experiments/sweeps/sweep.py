@@ -66,6 +66,7 @@ def record_of(run: Run, report: Report, started: datetime, load_before: float) -
         horizon=job.settings.horizon,
         threads=job.settings.threads,
         seed=job.settings.seed,
+        solver=job.settings.solver,
         blocks=len(job.instance.blocks),
         stacks=len(job.instance.stacks),
         buffers=len(job.instance.buffers),

@@ -2,8 +2,9 @@
 
 Column x_j is 1 where pebble k takes arc j of the time-expanded graph; the tokens (carriers) are pebbles too. Beside
 the x there is, per aggregate and step, a_{s,t} = 1 where it is active, as TOPPLE node v_{T_s} (its cost is paid here,
-once), and, per aggregate that stages pebbles and layer, h_{s,t} = 1 where its gathering node holds one. The rows are
-those of DESIGN's "what one step may hold"; the same rules are in words in `smash.gadget.motion.motion_fault`. Nothing
+once), per aggregate that stages pebbles and layer, h_{s,t} = 1 where its gathering node holds one, and, per buffer
+that is like others and step, b_{u,t} = 1 where it has been used (`_buffers_in_order`). The other rows are those of
+DESIGN's "what one step may hold"; the same rules are in words in `smash.gadget.motion.motion_fault`. Nothing
 here knows which aggregating actions the gadget has.
 """
 
@@ -35,6 +36,7 @@ class FlowModel:
         milp: the model.
         active: first column of a_{s,t}, by (aggregate, step); shape (aggregates, T).
         holds: column of h_{s,t}, by (staging aggregate, layer); shape (staging aggregates, T + 1).
+        used: column of b_{u,t}, by (buffer of `Scope.alike`, step); shape (buffers, T).
     """
 
     scope: Scope
@@ -42,6 +44,7 @@ class FlowModel:
     milp: Milp
     active: Ints
     holds: Ints
+    used: Ints
 
     def motion(self, vector: Floats) -> PebbleMotion:
         """Read the pebble motion off a solution; an activation that moves nothing is dropped."""
@@ -75,6 +78,9 @@ class FlowModel:
                 vector[self.active[number, step]] = 1
         for index, number in enumerate(gadget.staging):
             vector[self.holds[index]] = (layers == gadget.aggregates[number].gather).any(axis=1)
+        for buffer, used in zip(self.scope.alike, self.used, strict=True):
+            entered = (layers == gadget.top(buffer)).any(axis=1)
+            vector[used] = np.logical_or.accumulate(entered)[1:]
         return vector if self.milp.violation(vector) < 1e-6 else None
 
 
@@ -98,6 +104,8 @@ class _Assembly:
         active = self.builder.add_columns(aggregates * horizon, cost=np.repeat(np.array(prices, dtype=float), horizon))
         holds = self.builder.add_columns(staging * (horizon + 1))
         self.active, self.holds = active.reshape(aggregates, horizon), holds.reshape(staging, horizon + 1)
+        alike = len(scope.alike)
+        self.used = self.builder.add_columns(alike * horizon).reshape(alike, horizon)
         self._by_edge = np.argsort(arcs.edge, kind="stable")
         self._edges = arcs.edge[self._by_edge]
 
@@ -119,7 +127,9 @@ class _Assembly:
         self._tokens()
         self._arrivals()
         self._on_relations()
-        return FlowModel(self.scope, self.arcs, self.builder.build(self._name), self.active, self.holds)
+        self._buffers_in_order()
+        milp = self.builder.build(self._name)
+        return FlowModel(self.scope, self.arcs, milp, self.active, self.holds, self.used)
 
     def _grouped(self, keys: Ints, columns: Ints, values: Floats | float, least: int = 1, **sides: float) -> None:
         """Add one row per distinct key, over the columns that have it; rows of fewer than `least` entries fall away."""
@@ -329,13 +339,44 @@ class _Assembly:
                     values = np.concatenate([np.ones(len(on_top)), -np.ones(len(support))])
                     self.builder.add_row(np.concatenate([on_top, support]), values, upper=0)
 
+    def _buffers_in_order(self) -> None:
+        """Symmetry: of empty buffers that are alike, one is entered only once the one before it has been used.
+
+        b_{u,t} may be 1 from the step on in which u is entered first.
+        """
+        arcs, gadget, horizon = self.arcs, self.gadget, self.arcs.horizon
+        for number, buffer in enumerate(self.scope.alike):
+            enters = self._edge_flags(
+                lambda edge, at=buffer: (
+                    gadget.nodes[gadget.edges[edge].head].location == at  # type: ignore[misc]
+                    and gadget.nodes[gadget.edges[edge].tail].location != at
+                )
+            )
+            here, used = np.flatnonzero(enters[arcs.edge]), self.used[number]
+            steps = np.arange(horizon)
+            self._grouped(
+                np.concatenate([steps, steps[1:], arcs.step[here]]),
+                np.concatenate([used, used[:-1], here]),
+                np.concatenate([np.ones(horizon), -np.ones(horizon - 1), -np.ones(len(here))]),
+                upper=0,
+            )
+            if number:
+                before = self.used[number - 1]
+                keys = np.unique(arcs.step[here])
+                self._grouped(
+                    np.concatenate([arcs.step[here], keys]),
+                    np.concatenate([here, before[keys]]),
+                    np.concatenate([np.ones(len(here)), -np.ones(len(keys))]),
+                    upper=0,
+                )
+
     def _name(self, column: int) -> str:
         """Return a column's name: pebble, nodes and step, by number (names of blocks can be anything)."""
         arcs = self.arcs
         if column < len(arcs):
             what = "wait" if arcs.edge[column] == WAIT else self.gadget.edges[int(arcs.edge[column])].kind.value
             return f"{what}_k{arcs.pebble[column]}_v{arcs.tail[column]}_v{arcs.head[column]}_t{arcs.step[column]}"
-        for name, table in (("active", self.active), ("holds", self.holds)):
+        for name, table in (("active", self.active), ("holds", self.holds), ("used", self.used)):
             if table.size and table[0, 0] <= column <= table[-1, -1]:
                 index, step = divmod(column - int(table[0, 0]), table.shape[1])
                 return f"{name}_s{index}_t{step}"

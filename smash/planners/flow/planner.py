@@ -1,4 +1,4 @@
-"""The planner `smash-flow`: the paper's method on HiGHS, cold or started from another planner's plan."""
+"""The planner `smash-flow`: the paper's method, cold or started from another planner's plan."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from time import perf_counter
 from typing import TYPE_CHECKING, ClassVar
 
+from smash.planners.milp.planner import MilpPlanner
 from smash.planners.milp.warm_start import warm_starts
-from smash.planners.protocol import Method, MethodPlanner, Settings, SolveLog, anything, plan_options, settings_of
+from smash.planners.protocol import Method, Settings, SolveLog, anything, plan_options, settings_of
 from smash.problem.errors import MalformedFile
 from smash.problem.model import Instance, PlanOptions
 from smash.problem.problem import Problem
@@ -17,32 +18,29 @@ if TYPE_CHECKING:
     from smash.planners.milp.arrays import Milp
 
 MARGIN = 0.04
-"""Share of the budget that is left for HiGHS to notice its time limit and for reading the last solution."""
+"""Share of the budget that is left for a solver to notice its time limit and for reading the last solution."""
 WARM_SHARE = 0.25
 """Share of the budget that the planner of a warm start may take."""
 MODEL_WARM_SECONDS = 1.0
 """For the planner of a warm start where the model is built and not solved."""
 
 
-class FlowPlanner(MethodPlanner):
+class FlowPlanner(MilpPlanner):
     """Time-expanded multi-commodity flow on the gadget ("Computing a candidate task plan"), anytime.
 
     Every goal kind, starts on buffers and on the table, caps. A horizon that is too short proves nothing by
     itself; see `smash.planners.flow.search` for what it does prove.
     """
 
-    summary: ClassVar[str] = "the paper's time-expanded flow on the gadget, as a MILP (HiGHS)"
+    summary: ClassVar[str] = "the paper's time-expanded flow on the gadget, as a MILP"
     proves: ClassVar[bool] = True
     aggregating: ClassVar[frozenset[str]] = frozenset({"topple", "carry", "lift"})
     weighs: ClassVar[bool] = True
     kept_back: ClassVar[float] = MARGIN
 
     def prepare(self) -> None:
-        """Load numpy and HiGHS."""
-        import highspy  # noqa: F401
-
+        """Load numpy and the model."""
         import smash.planners.flow.search  # noqa: F401
-        from smash.planners.milp.solvers import highs  # noqa: F401
 
     def methods(self, problem: Problem, settings: Settings) -> Sequence[Method]:
         """Return the warm start, where one is asked for, and the flow models of growing horizon."""

@@ -1,9 +1,11 @@
 """What the flow model of an instance has to hold: its pebbles, where each may be, where each must end.
 
-Three things are left out because some optimal plan does without them (each is independent of the time index):
+Four things are left out because some optimal plan does without them (each is independent of the time index):
 
 - a block of the correct bottom part of its goal pile never moves: take its moves out of a plan, and what the others do
   stays legal, ends alike and costs no more, whatever the actions and their costs;
+- buffers that start empty are first used in their order (they are interchangeable). Not where distances cost, nor
+  where several blocks are put on a pile at once, whose actions name them;
 - buffers beyond the number of moving blocks stay empty, and where that many start empty, each block has
   one of its own, in which nothing buries it (buffers are interchangeable). Not where distances cost, for there they
   differ, nor where several blocks are put on a pile at once;
@@ -41,6 +43,7 @@ class Scope:
         goal: per pebble its goal node, or None where the goal does not name its position.
         own_buffer: per pebble its own buffer, or None.
         direct: whether a block moves from where nothing can bury it to its goal pile alone.
+        alike: the empty buffers that are first used in this order.
     """
 
     instance: Instance
@@ -50,6 +53,7 @@ class Scope:
     goal: tuple[int | None, ...]
     own_buffer: tuple[str | None, ...]
     direct: bool = True
+    alike: tuple[str, ...] = ()
 
     @property
     def blocks(self) -> int:
@@ -133,8 +137,10 @@ def scope_of(problem: Problem) -> Scope:
     moving = tuple(number for number, block in enumerate(instance.blocks) if block not in correct)
     several, distances = can_stack_several(instance, options), bool(instance.costs.travel)
     own: tuple[str | None, ...] = (None,) * len(instance.blocks)
+    alike: tuple[str, ...] = ()
     if not several and not distances:
         instance, own = _needed_buffers(instance, moving)
+        alike = tuple(at for at in instance.buffers if not instance.start[at] and at not in own)
     gadget = gadget_of(instance, options)
     goal = goal_positions(instance)
     return Scope(
@@ -145,6 +151,7 @@ def scope_of(problem: Problem) -> Scope:
         goal=tuple(gadget.stack_node(*goal[block]) if block in goal else None for block in instance.blocks),
         own_buffer=own,
         direct=not (isinstance(instance.goal, OnGoal) or several or (distances and gadget.tokens)),
+        alike=alike,
     )
 
 

@@ -33,8 +33,19 @@ MOST_EDGES = 4_000_000
 EDGES_PER_SECOND = 300_000
 """Such edges that are at least looked at in a second; a gadget that would take half the time left is not begun."""
 
-NO_PROBING = 1 << 15
+OPTIONS = {"highs": {"presolve_rule_off": 1 << 15}}
 """HiGHS' presolve without probing, which costs more than it brings here: seconds before the first incumbent."""
+LINEAR = {"cpsat": {"linearization_level": 2}}
+"""CP-SAT with all rows in its LPs: it proves in half the time, and finds plans of its own later."""
+CLIMBING = frozenset({"cpsat"})
+"""Solvers that settle the shortest horizons in no time: they begin there and go up. With topple a step at a time, each
+time from the best plan so far. Without, plans of the shortest horizons are far from the cheapest and lead
+nowhere: after some steps it is a jump, and each horizon is begun anew. Other solvers begin where most plans fit, for
+they find none in a tight horizon."""
+STEPS_BEFORE_JUMP = 2
+"""Steps beyond the first horizon with a plan that are taken one by one; then one is left out."""
+CLIMB_SHARE, JUMP_SHARE = 0.25, 0.5
+"""Share of the time left that a solver which climbs has for a horizon beyond the first with a plan, or begun anew."""
 
 
 class TooLarge(SmashError):
@@ -70,6 +81,7 @@ class FlowSearch:
         self._law = Law(self.scope.instance, problem.options, problem.kinds)  # idle buffers change no kind
         self.bound = step_bound(problem, self.scope)
         self.reaches = reaches_of(self.scope)
+        self._first_with_plan = 0
         log.prove(self.bound.least_cost, "moves")
 
     def first_horizon(self) -> int:
@@ -83,22 +95,46 @@ class FlowSearch:
         horizon = max(1, shortest + moves + moves // 3 + (2 if self.scope.gadget.staging else 0))
         return horizon if self.log.best is None else max(horizon, self._steps_of_best())
 
+    def shortest_horizon(self) -> int:
+        """Return the longest way of a pebble alone: no plan needs fewer steps."""
+        return max(1, *(reach.shortest for reach in self.reaches.values()))
+
     def run(self) -> None:
         """Solve until proven, out of time, or, with a given horizon, once.
 
         Raises:
             TooLarge: where a model cannot be built.
         """
-        horizon = self.horizon or self.first_horizon()
+        horizon = self.horizon or (self.shortest_horizon() if self._climbs else self.first_horizon())
         while not self.solving.done():
-            result = self._solve(horizon)
-            if result is None or result.status not in ("optimal", "infeasible") or self.horizon is not None:
+            patient = not self._climbs or self.log.cost is None
+            result = self._solve(horizon, 1.0 if patient else JUMP_SHARE if self._begins_anew(horizon) else CLIMB_SHARE)
+            if result is None or self.horizon is not None:
                 return
+            if result.status not in ("optimal", "infeasible") and not (self._climbs and self.log.cost is not None):
+                return
+            if patient:
+                self._first_with_plan = horizon
             horizon = self._next_horizon(horizon)
         if not self.log.details.get("stages"):
             self.log.details["stopped"] = f"the time was up before the model of horizon {horizon} was begun"
 
+    @property
+    def _climbs(self) -> bool:
+        return self.solving.settings.solver in CLIMBING and self.horizon is None
+
+    @property
+    def _topples(self) -> bool:
+        return bool(self.scope.gadget.staging)
+
+    def _begins_anew(self, horizon: int) -> bool:
+        """Whether a solver that climbs gets no plan to start from."""
+        return self._climbs and not self._topples and horizon > self._first_with_plan + STEPS_BEFORE_JUMP
+
     def _next_horizon(self, horizon: int) -> int:
+        if self._climbs:
+            jumps = not self._topples and horizon == self._first_with_plan + STEPS_BEFORE_JUMP
+            return horizon + (2 if jumps else 1)
         if self.log.cost is None:
             return horizon + max(2, horizon // 4)
         return max(horizon + 1, self.bound.steps(self.log.cost - 1))
@@ -115,14 +151,16 @@ class FlowSearch:
             raise TooLarge(f"the flow model has {arcs:,} arcs at horizon {horizon}; at most {most:,.0f} are built here")
         return build(self.scope, self.reaches, horizon)
 
-    def _solve(self, horizon: int) -> MilpResult | None:
+    def _solve(self, horizon: int, share: float) -> MilpResult | None:
+        anew = self._begins_anew(horizon)
         stage = Stage(
             name="flow",
             build=lambda _until: self.model(horizon),
             decode=self._decode,
             horizon=horizon,
-            start=self._start,
-            options={"presolve_rule_off": NO_PROBING},
+            share=share,
+            start=None if anew else self._start,
+            options=OPTIONS if anew else OPTIONS | LINEAR,
         )
         result = self.solving.run(stage)
         if result is not None:

@@ -13,7 +13,7 @@ from smash.problem.problem import Problem
 
 def motion_of(problem: Problem, scope: Scope, actions: Sequence[Action]) -> PebbleMotion:
     """Return the motion of a legal plan of a problem on the gadget of its scope."""
-    if scope.instance.buffers != problem.instance.buffers or scope.own_buffers:
+    if scope.instance.buffers != problem.instance.buffers or scope.own_buffers or scope.alike:
         actions = _Renaming(problem, scope).run(actions)
     motion = encode(scope.instance, actions, scope.gadget)
     gadget = scope.gadget

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
+from smash.planners.milp.planner import MilpPlanner
 from smash.planners.milp.warm_start import warm_starts
 from smash.planners.protocol import (
     Method,
-    MethodPlanner,
     Settings,
     SolveLog,
     left,
@@ -30,7 +30,7 @@ TWIN_SHARE = 0.1
 """Share of the time left for the first plans of the plain twin."""
 
 
-class LayeredPlanner(MethodPlanner):
+class LayeredPlanner(MilpPlanner):
     """The SMASH gadget with its free chain edges contracted, buffers first unbounded, then as many as there are.
 
     With unbounded buffers and a horizon that holds every plan, the model's optimum bounds the cost of all plans; a
@@ -38,19 +38,16 @@ class LayeredPlanner(MethodPlanner):
     nothing, and gives the first plans. Problems with carry, lift or costs have models on a network of places.
     """
 
-    summary: ClassVar[str] = "the SMASH gadget with its free chain edges contracted, as a MILP (HiGHS)"
+    summary: ClassVar[str] = "the SMASH gadget with its free chain edges contracted, as a MILP"
     proves: ClassVar[bool] = True
     aggregating: ClassVar[frozenset[str]] = frozenset({"topple", "carry", "lift"})
     weighs: ClassVar[bool] = True
     gentle: ClassVar[bool] = True
 
     def prepare(self) -> None:
-        """Load the solver and the arrays, so that no import is counted as planning."""
-        import highspy  # noqa: F401
-
+        """Load the arrays and the models, so that no import is counted as planning."""
         from smash.planners.layered import stages  # noqa: F401
         from smash.planners.layered.network import stages as network_stages  # noqa: F401
-        from smash.planners.milp.solvers import highs  # noqa: F401
 
     def methods(self, problem: Problem, settings: Settings) -> Sequence[Method]:
         """Return the stages of the contracted gadget, and those of the network of places."""

@@ -5,8 +5,8 @@ Build and solve stay separate steps: a `Stage` says how a model is built and rea
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from math import ceil, isfinite
 from time import perf_counter
 from typing import Any, Generic, Protocol, TypeVar
@@ -14,7 +14,7 @@ from typing import Any, Generic, Protocol, TypeVar
 from smash.planners.milp.arrays import Floats, Milp, MilpResult, OutOfTime
 from smash.planners.milp.solvers import solver_of
 from smash.planners.protocol import Settings, SolveLog, left
-from smash.problem.errors import IllegalAction
+from smash.problem.errors import IllegalAction, Unsupported
 from smash.problem.model import Action
 
 BUILD_SHARE = 0.6
@@ -48,7 +48,7 @@ class Stage(Generic[Model]):
         share: share of the time left that the solver may take, and building at the most.
         estimate: a generous estimate of how long it takes to build and to load [s]: with less left it is not begun.
         start: the solution that the solver starts from, None where there is none.
-        options: options of the solver.
+        options: further options, by solver.
     """
 
     name: str
@@ -58,7 +58,7 @@ class Stage(Generic[Model]):
     share: float = 1.0
     estimate: float = 0.0
     start: Callable[[Model], Floats | None] | None = None
-    options: dict[str, Any] | None = None
+    options: Mapping[str, dict[str, Any]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,12 @@ class Solving:
         return self.log.settled or left(self.until) <= 0
 
     def run(self, stage: Stage[Model]) -> MilpResult | None:
-        """Build and solve a model; None where there is not the time to build it, which is noted in the details."""
+        """Build and solve a model.
+
+        Returns:
+            The result; None where there is not the time to build it or the solver does not take it, which is noted in
+            the details.
+        """
         began = perf_counter()
         if stage.estimate >= left(self.until):
             self._note(stage, {"skipped": f"it would take some {stage.estimate:.2g} s to build"})
@@ -97,16 +102,20 @@ class Solving:
         def found(vector: Floats) -> None:
             self._offer(stage, model, vector)
 
-        result = solver_of(self.settings)(
-            model.milp,
-            time_limit=stage.share * left(self.until),
-            threads=self.settings.threads,
-            seed=self.settings.seed,
-            start=start,
-            on_solution=None if stage.decode is None else lambda _seconds, _objective, vector: found(vector),
-            should_stop=self.done,
-            options=stage.options,
-        )
+        try:
+            result = solver_of(self.settings)(
+                model.milp,
+                time_limit=stage.share * left(self.until),
+                threads=self.settings.threads,
+                seed=self.settings.seed,
+                start=start,
+                on_solution=None if stage.decode is None else lambda _seconds, _objective, vector: found(vector),
+                should_stop=self.done,
+                options=stage.options.get(self.settings.solver),
+            )
+        except Unsupported as error:  # the licence of a solver, or what it takes of numbers, ends with this model
+            self._note(stage, model.milp.size() | {"refused": str(error)})
+            return None
         if result.vector is not None:
             found(result.vector)
         note = model.milp.size() | {"build_seconds": round(built - began, 4)}

@@ -7,11 +7,29 @@ from smash.planners.protocol.answer import OnIncumbent, PlanResult
 from smash.planners.protocol.clock import SPARE_SECONDS, deadline_of, left
 from smash.planners.protocol.log import IncumbentLog, Relay, SolveLog
 from smash.planners.protocol.methods import Method, MethodPlanner, anything, not_plain, plain, walk
-from smash.planners.protocol.planner import BasePlanner, Planner, ProblemPlanner, ask, why_refused, why_unsupported
-from smash.planners.protocol.settings import MOST_THREADS, Settings, SolveOptions, plan_options, settings_of
+from smash.planners.protocol.planner import (
+    BasePlanner,
+    Planner,
+    ProblemPlanner,
+    ask,
+    why_not_settings,
+    why_refused,
+    why_unsupported,
+)
+from smash.planners.protocol.settings import (
+    HIGHS,
+    MOST_THREADS,
+    SOLVERS,
+    Settings,
+    SolveOptions,
+    plan_options,
+    settings_of,
+)
 
 __all__ = [
+    "HIGHS",
     "MOST_THREADS",
+    "SOLVERS",
     "SPARE_SECONDS",
     "BasePlanner",
     "IncumbentLog",
@@ -34,6 +52,7 @@ __all__ = [
     "plan_options",
     "settings_of",
     "walk",
+    "why_not_settings",
     "why_refused",
     "why_unsupported",
 ]

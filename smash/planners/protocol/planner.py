@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import ClassVar, Protocol, runtime_checkable
 
 from smash.planners.protocol.answer import OnIncumbent, PlanResult
-from smash.planners.protocol.settings import Settings, SolveOptions, plan_options, settings_of
+from smash.planners.protocol.settings import HIGHS, Settings, SolveOptions, plan_options, settings_of
 from smash.problem.model import Instance, PlanOptions
 from smash.problem.plan import Plan
 from smash.problem.problem import Problem
@@ -32,6 +32,9 @@ class Planner(Protocol):
     - `weighs: bool`, whether it takes instances whose actions do not all cost 1;
     - `open_goals: bool`, whether it takes `on` goals whose `ontable` and `clear` leave open where blocks come to rest;
     - `holds: bool`, whether it takes a start with a block in the hand;
+    - `solvers: frozenset[str]`, the MILP solvers that it can be told to use: one that names none has no MILP that
+      a solver could be chosen for or another planner's plan could start, and refuses to be told so;
+    - `load_solver(settings) -> None`, loads the solver that it is told to use, before the clock starts;
     - `missing() -> str | None`, what is not installed that it needs;
     - `with_encoding(name) -> Planner`, the same planner on another PDDL encoding (`NAME:ENCODING`);
     - `build_model(instance, options) -> Milp`, the MILP that `solve` starts with, for `smash model`.
@@ -59,6 +62,7 @@ class BasePlanner:
     weighs: ClassVar[bool] = False
     open_goals: ClassVar[bool] = False
     holds: ClassVar[bool] = False
+    solvers: ClassVar[frozenset[str]] = frozenset()
 
     def prepare(self) -> None:
         """Load what is loaded once and compile what is compiled once; not counted in the planner's time."""
@@ -127,10 +131,27 @@ def why_refused(planner: Planner, problem: Problem, settings: Settings) -> str |
         return f"the hand holds {instance.hand!r} at the start"
     if problem.open_rest is not None and not getattr(planner, "open_goals", False):
         return problem.open_rest
+    if (reason := why_not_settings(planner, settings)) is not None:
+        return reason
     if isinstance(planner, ProblemPlanner):
         return planner.refuses(problem, settings)
     ask = getattr(planner, "unsupported", None)
     return None if ask is None else ask(problem.posed, SolveOptions.of(problem.options, settings))
+
+
+def why_not_settings(planner: Planner, settings: Settings) -> str | None:
+    """Return why a planner cannot solve so, or None: a setting that means nothing to it is not passed over in silence.
+
+    Args:
+        planner: ours, or any object with `solve`.
+        settings: how it would solve.
+    """
+    solvers = getattr(planner, "solvers", BasePlanner.solvers)
+    if settings.solver != HIGHS and settings.solver not in solvers:
+        return f"it has no MILP that `--solver {settings.solver}` could solve"
+    if settings.warm_start is not None and not solvers:
+        return f"it has no MILP that `--warm-start {settings.warm_start}` could start"
+    return None
 
 
 def why_unsupported(planner: Planner, instance: Instance, options: PlanOptions) -> str | None:

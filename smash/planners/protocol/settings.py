@@ -6,6 +6,10 @@ from dataclasses import dataclass, fields, replace
 
 from smash.problem.model import PlanOptions
 
+HIGHS = "highs"
+"""The solver of a MILP where none is named."""
+SOLVERS = (HIGHS, "cpsat", "scip", "gurobi")
+"""The solvers that a planner with a MILP may be told to use."""
 MOST_THREADS = 256
 """Threads that a solver may be given; with some thousands it does nothing but start them."""
 
@@ -21,6 +25,7 @@ class Settings:
         seed: for whatever draws at random.
         command: the command line of a program outside, for the planner `command`.
         encoding: the PDDL encoding that such a program is handed (None: the planner's choice).
+        solver: solves the MILPs, one of `SOLVERS`.
     """
 
     warm_start: str | None = None
@@ -29,6 +34,7 @@ class Settings:
     seed: int = 0
     command: str | None = None
     encoding: str | None = None
+    solver: str = HIGHS
 
     @property
     def cold(self) -> Settings:
@@ -46,6 +52,7 @@ class SolveOptions(PlanOptions):
     seed: int = 0
     command: str | None = None
     encoding: str | None = None
+    solver: str = HIGHS
 
     @classmethod
     def of(cls, options: PlanOptions, settings: Settings) -> SolveOptions:

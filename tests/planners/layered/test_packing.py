@@ -32,8 +32,15 @@ def test_blocks_that_are_put_aside_get_a_buffer_each_where_the_lower_one_is_need
     assert plan[1].target != plan[3].target
 
 
-def test_without_a_free_place_there_is_no_plan():
-    made = reversal(buffers="u", options=NO_TOPPLE)
+def test_without_a_free_place_a_block_is_moved_once_more():
+    tall = problem({"s": "ab", "t": "cd"}, {"s": "dc", "t": "ba"}, "s t", "u", NO_TOPPLE)
+    events = [("aside", at) for at in "bdac"] + [("from_aside", at) for at in "dcba"]
+    assert tall.law.check(packed(tall, *events)).accepted
+    assert len(packed(tall, *events)) > 2 * len(events)
+
+
+def test_where_no_pile_is_left_there_is_no_plan():
+    made = problem({"s": "ab"}, {"s": "ba"}, "s t", "", NO_TOPPLE)
     assert packed(made, ("aside", "b"), ("aside", "a"), ("from_aside", "b"), ("from_aside", "a")) is None
 
 
@@ -50,6 +57,6 @@ def test_a_floating_tower_is_built_where_nothing_happens_later():
     assert plan[1] == Place("b", "u")
 
 
-def test_events_that_no_pile_allows_are_refused_by_the_law():
+def test_events_that_no_law_allows_are_refused_by_it():
     with pytest.raises(IllegalAction):
-        packed(reversal(options=NO_TOPPLE), ("aside", "a"), ("aside", "b"))
+        packed(reversal(options=NO_TOPPLE), ("topple", 0, "s"), ("from_table", "b"))

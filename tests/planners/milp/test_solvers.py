@@ -1,4 +1,4 @@
-"""The array form of a MILP: two solvers give the same optimum, starts are taken, files are written."""
+"""The array form of a MILP: all solvers give the same optimum, starts are taken, files are written."""
 
 import sys
 
@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from smash.planners.milp.arrays import MilpBuilder, SparseRows
-from smash.planners.milp.solvers import gurobi, highs
+from smash.planners.milp.solvers import NEEDS, cpsat, gurobi, highs, load_solver, scip
+from smash.planners.protocol import SOLVERS, Settings
 from smash.problem import MalformedFile, Unsupported
 
 
@@ -20,16 +21,6 @@ def cover(seed=0, elements=12, sets=20):
     rows, where = np.nonzero(member)
     builder.add_rows(rows, columns[where], 1.0, count=elements, lower=1.0)
     return builder.build(name=lambda j: f"take_{j}")
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_highs_and_gurobi_prove_the_same_optimum(seed):
-    pytest.importorskip("gurobipy")
-    model = cover(seed)
-    ours, theirs = highs.solve(model, time_limit=10), gurobi.solve(model, time_limit=10)
-    assert ours.status == theirs.status == "optimal"
-    assert ours.objective == pytest.approx(theirs.objective)
-    assert model.violation(ours.vector) < 1e-6
 
 
 def test_every_better_solution_is_reported_with_its_objective():
@@ -105,3 +96,65 @@ def test_a_matrix_of_entries_adds_up_what_lies_at_one_place(seed, rows, columns,
     spans = [matrix.indices[begin:end] for begin, end in zip(matrix.indptr, matrix.indptr[1:], strict=False)]
     assert all((np.diff(span) > 0).all() for span in spans)
     assert matrix.nnz == len({*zip(at, where, strict=True)}) == len(matrix.indices)
+
+
+SOLVES = {"highs": highs, "cpsat": cpsat, "scip": scip, "gurobi": gurobi}
+
+
+@pytest.fixture(params=SOLVES)
+def solver(request):
+    for module in NEEDS[request.param]:
+        pytest.importorskip(module)
+    return SOLVES[request.param]
+
+
+def test_every_solver_that_can_be_named_is_there():
+    assert set(SOLVES) == set(NEEDS) == set(SOLVERS)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_all_solvers_prove_the_same_optimum(solver, seed):
+    model, seen = cover(seed), []
+    theirs = solver.solve(model, time_limit=60, seed=seed, on_solution=lambda t, value, vector: seen.append(vector))
+    ours = highs.solve(model, time_limit=60)
+    assert theirs.status == "optimal"
+    assert theirs.objective == pytest.approx(ours.objective)
+    assert ours.objective - 0.999 <= theirs.bound <= ours.objective + 1e-6
+    assert all(model.violation(vector) < 1e-6 for vector in [theirs.vector, *seen])
+    assert min(model.objective @ vector for vector in [theirs.vector, *seen]) == pytest.approx(ours.objective)
+
+
+def test_all_solvers_take_a_start(solver):
+    model = cover(3, 40, 80)
+    best = highs.solve(model, time_limit=60)
+    assert solver.solve(model, time_limit=60, start=best.vector).objective == pytest.approx(best.objective)
+
+
+def test_all_solvers_prove_that_there_is_no_solution(solver):
+    builder = MilpBuilder()
+    column = builder.add_columns(2)
+    builder.add_row(column, 1.0, lower=3)
+    result = solver.solve(builder.build(), time_limit=60)
+    assert (result.status, result.objective, result.vector) == ("infeasible", None, None)
+
+
+def test_all_solvers_end_where_they_are_asked_to(solver):
+    asked = []
+    result = solver.solve(cover(1, 300, 600), time_limit=60, should_stop=lambda: asked.append(True) or True)
+    assert result.status != "optimal" or solver is gurobi  # which may prove it in its presolve
+    assert asked or solver is gurobi
+
+
+def test_cpsat_takes_whole_numbers_alone():
+    pytest.importorskip("ortools")
+    builder = MilpBuilder()
+    builder.add_row(builder.add_columns(1), 0.5, upper=1)
+    with pytest.raises(Unsupported, match=r"whole numbers alone, and a coefficient of the model is 0\.5"):
+        cpsat.solve(builder.build(), time_limit=1)
+
+
+@pytest.mark.parametrize(("solver", "module", "extra"), [("cpsat", "ortools", "cp-sat"), ("scip", "pyscipopt", "scip")])
+def test_without_its_package_a_solvers_extra_is_named(monkeypatch, solver, module, extra):
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(Unsupported, match=rf"--solver {solver} needs {module}: pip install 'smash-testbed\[{extra}\]'"):
+        load_solver(Settings(solver=solver))

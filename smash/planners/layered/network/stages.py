@@ -24,8 +24,8 @@ FLOW_SHARE = 0.2
 """Share of the time left that a program without order may take."""
 RELAXATION_SHARE = 0.5
 """Share of the time left that one relaxation may take."""
-UNPROBED = {"presolve": "off"}
-"""For the relaxation: the solver's presolve takes most of its time, keeps to no limit, and saves no search."""
+UNPROBED = {"highs": {"presolve": "off"}}
+"""For the relaxation: HiGHS' presolve takes most of its time, keeps to no limit, and saves no search."""
 ORIGIN = "layered flow without order"
 
 

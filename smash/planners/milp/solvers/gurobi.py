@@ -23,6 +23,7 @@ def solve(
     on_solution: OnSolution | None = None,
     should_stop: Callable[[], bool] | None = None,
     absolute_gap: float = 0.999,
+    options: dict[str, Any] | None = None,
 ) -> MilpResult:
     """Solve a model; arguments and result as in `highs.solve`.
 
@@ -37,7 +38,7 @@ def solve(
     try:
         with gurobipy.Env(params={"OutputFlag": 0}) as environment, gurobipy.Model(env=environment) as program:
             settings = {"TimeLimit": max(0.0, time_limit), "Threads": threads, "Seed": seed, "MIPGapAbs": absolute_gap}
-            for name, value in {**settings, "MIPGap": 0.0}.items():
+            for name, value in {**settings, "MIPGap": 0.0, **(options or {})}.items():
                 program.setParam(name, value)
             kinds: Any = ["I" if flag else "C" for flag in model.integral]
             columns: Any = program.addMVar(
