@@ -53,6 +53,7 @@ def test_names_that_look_like_the_template_or_like_markup_are_only_names(name, t
         (StacksGoal({"s2": ("b1", "b2"), "s3": (), "s1": ("b3",)}), "s2 = b1 b2; s1 = b3 (bottom first)"),
         (PositionsGoal({"b2": ("s3", 2), "b1": ("s3", 1)}), "s3 = b1 b2 (bottom first, other blocks anywhere)"),
         (OnGoal({"b2": "b1", "b3": "b2"}, ("b1",)), "b2 on b1; b3 on b2; b1 at the bottom"),
+        (OnGoal({"b2": "b1"}, (), ("b1",), ("b2",)), "b2 on b1; b1 on the table; b2 clear"),
         (StacksGoal({"s1": ()}), "nothing"),
         (OnGoal({}), "nothing"),
     ],

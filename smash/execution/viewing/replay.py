@@ -73,6 +73,8 @@ def goal_in_words(goal: Goal) -> str:
         case OnGoal():
             asked = [f"{upper} on {under}" for upper, under in goal.on.items()]
             asked += [f"{block} at the bottom" for block in goal.bottom]
+            asked += [f"{block} on the table" for block in goal.ontable]
+            asked += [f"{block} clear" for block in goal.clear]
             return "; ".join(asked) or "nothing"
         case PositionsGoal():
             piles, rest = goal.stacks(), "bottom first, other blocks anywhere"
