@@ -49,6 +49,10 @@ def command(
     reason = why_refused(chosen, Problem(problem, plan_options(options)), settings_of(options))
     if reason:
         raise Unsupported(f"planner {planner!r}: unsupported: {reason}")
+    if problem.hand is not None:
+        raise Unsupported(
+            f"the hand holds {problem.hand!r} at the start: there is a model for each first place, none of all"
+        )
     model = build(problem, options)
     if out is not None:
         from smash.planners.milp.solvers import highs

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from smash.gadget.elements import EdgeKind, NodeKind
 from smash.gadget.graph import Gadget
+from smash.problem.errors import Unsupported
 from smash.problem.model import State
 
 
@@ -83,7 +84,13 @@ class PebbleMotion:
 
 
 def settled(gadget: Gadget, blocks: tuple[str, ...], state: State) -> tuple[int, ...]:
-    """Return the node of each pebble in `state` (the paper's GetPebbleState): heights from 1, no holes."""
+    """Return the node of each pebble in `state` (the paper's GetPebbleState): heights from 1, no holes.
+
+    Raises:
+        Unsupported: where a block is in the hand, for which the gadget has no node.
+    """
+    if state.hand is not None:
+        raise Unsupported(f"the gadget has no node for {state.hand!r}, which is in the hand at the start")
     node = {block: gadget.node(NodeKind.TABLE) for block in state.table}
     for location, pile in state.piles.items():
         for height, block in enumerate(pile, start=1):

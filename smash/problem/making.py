@@ -66,11 +66,12 @@ def make_instance(
         locations += _fresh("stacks", "s", stacks, (*locations, *named), where)
     if isinstance(buffers, int):
         named = _fresh("buffers", "u", buffers, locations, where)
+    held = None if hand is None else _name("hand", hand, where)
     if blocks is None:
-        standing = [*piles.values(), fallen, *(carrier.holds for carrier in holding), () if hand is None else (hand,)]
+        standing = [*piles.values(), fallen, *(carrier.holds for carrier in holding), () if held is None else (held,)]
         blocks = dict.fromkeys(block for pile in standing for block in pile)
     instance = Instance(
-        name=_name(name, where),
+        name=_name("name", name, where),
         blocks=_names("blocks", blocks, where),
         stacks=tuple(locations),
         buffers=tuple(named),
@@ -80,7 +81,7 @@ def make_instance(
         carriers=holding,
         capacities=dict(capacities or {}),
         costs=costs,
-        hand=hand,
+        hand=held,
     )
     return checked(instance, where)
 
@@ -96,9 +97,9 @@ def _fresh(part: str, letter: str, count: int, taken: tuple[str, ...] | list[str
     return list(itertools.islice(fresh_names(letter, {*taken, TABLE}), count))
 
 
-def _name(name: Any, where: str) -> str:
+def _name(part: str, name: Any, where: str) -> str:
     if not isinstance(name, str):
-        raise MalformedFile(where, f"`name`: {name!r} is no name; a string is one")
+        raise MalformedFile(where, f"`{part}`: {name!r} is no name; a string is one")
     return name
 
 
@@ -106,17 +107,18 @@ def _names(part: str, names: Any, where: str) -> tuple[str, ...]:
     """Return names as a tuple; anything else is refused."""
     if not isinstance(names, Iterable) or (isinstance(names, str) and part in ("stacks", "buffers")):
         raise MalformedFile(where, f"`{part}`: {names!r} is not allowed; a list of names is")
-    listed = tuple(names)
-    for name in listed:
-        if not isinstance(name, str):
-            raise MalformedFile(where, f"`{part}`: {name!r} is no name; a string is one")
-    return listed
+    return tuple(_name(part, name, where) for name in names)
+
+
+def _mapping(part: str, given: Any, where: str, of: str) -> Mapping[Any, Any]:
+    if not isinstance(given, Mapping):
+        raise MalformedFile(where, f"`{part}`: {given!r} is not allowed; a mapping of {of} is")
+    return given
 
 
 def _piles(part: str, piles: Any, where: str, *, letters: bool) -> dict[str, tuple[str, ...]]:
     """Return piles as tuples; a text in place of a list is taken by its letters only where the blocks are known."""
-    if not isinstance(piles, Mapping):
-        raise MalformedFile(where, f"`{part}`: {piles!r} is not allowed; a mapping of locations to lists of blocks is")
+    _mapping(part, piles, where, "locations to lists of blocks")
     for location, pile in piles.items():
         if isinstance(pile, str) and not letters:
             raise MalformedFile(where, f"`{part}.{location}`: {pile!r} is one name; a list of blocks is allowed")
@@ -130,9 +132,13 @@ def _goal(goal: Any, where: str) -> Goal:
         case StacksGoal(stacks):
             return StacksGoal(_piles("goal.stacks", stacks, where, letters=True))
         case PositionsGoal(positions):
-            return PositionsGoal({block: _position(block, at, where) for block, at in positions.items()})
+            named = _mapping("goal.positions", positions, where, "blocks to (location, height)")
+            return PositionsGoal({block: _position(block, at, where) for block, at in named.items()})
         case OnGoal(on, bottom, ontable, clear):
-            return OnGoal(dict(on), tuple(bottom), tuple(ontable), tuple(clear))
+            under = _mapping("goal.on", on, where, "blocks to the block under each")
+            relations = {upper: _name(f"goal.on.{upper}", lower, where) for upper, lower in under.items()}
+            parts = {"bottom": bottom, "ontable": ontable, "clear": clear}
+            return OnGoal(relations, *(_names(f"goal.{part}", blocks, where) for part, blocks in parts.items()))
         case Mapping():
             return StacksGoal(_piles("goal", goal, where, letters=False))
         case _:

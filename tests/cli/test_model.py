@@ -7,6 +7,8 @@ from pathlib import Path
 import highspy
 import pytest
 
+from smash import make_instance, write_instance
+
 FIGURE1 = Path(__file__).parents[2] / "examples" / "figure1.json"
 
 
@@ -40,3 +42,12 @@ def test_refusals_are_one_line(tmp_path, arguments, code):
     done = smash("model", FIGURE1, *arguments)
     assert done.returncode == code
     assert len(done.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize("planner", ["smash-flow", "smash-layered"])
+def test_a_full_hand_has_a_model_for_each_first_place_and_none_of_all(tmp_path, planner):
+    held = make_instance({"s1": ["a"]}, {"s1": ["a", "b"]}, hand="b")
+    write_instance(held, tmp_path / "held.json")
+    done = smash("model", tmp_path / "held.json", "--planner", planner)
+    assert (done.returncode, len(done.stderr.splitlines())) == (6, 1)
+    assert "first place" in done.stderr

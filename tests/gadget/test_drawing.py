@@ -8,14 +8,26 @@ from pathlib import Path
 import pytest
 
 from smash.gadget import gadget_of, smash_gadget
-from smash.gadget.drawing.draw import write_motion
+from smash.gadget.drawing.draw import draw, write_motion
 from smash.gadget.drawing.figure import gadget_figure
 from smash.gadget.drawing.layout import lay_out
 from smash.gadget.drawing.pebbles import step_captions, strip_layers
 from smash.gadget.drawing.piles import instance_figure
 from smash.gadget.drawing.style import RADIUS, save
 from smash.gadget.encode import encode
-from smash.problem import Carrier, Carry, Lift, OnGoal, Pick, Place, PositionsGoal, SmashError, Topple, make_instance
+from smash.problem import (
+    Carrier,
+    Carry,
+    Lift,
+    OnGoal,
+    Pick,
+    Place,
+    PositionsGoal,
+    SmashError,
+    Topple,
+    Unsupported,
+    make_instance,
+)
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 MAGIC = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml", ".gif": b"GIF8"}
@@ -97,6 +109,12 @@ def test_captions_say_the_actions_of_each_step(odd):
 def test_a_strip_has_the_start_the_staged_blocks_what_follows_and_the_end():
     assert strip_layers(["", "topple s1 from height 2", "", ""], [1]) == [0, 1, 2, 4]
     assert len(strip_layers(["x"] * 100)) == 12
+
+
+def test_a_plan_that_begins_with_a_full_hand_is_not_drawn_on_the_gadget():
+    held = make_instance({"s1": ["a"]}, OnGoal({"b": "a"}), hand="b")
+    with pytest.raises(Unsupported, match="no node for 'b', which is in the hand"):
+        draw(held, [Place("b", "s1")])
 
 
 @pytest.mark.parametrize("name", ["picture.txt", "picture"])

@@ -128,7 +128,7 @@ def why_refused(planner: Planner, problem: Problem, settings: Settings) -> str |
     if not instance.costs.plain and not getattr(planner, "weighs", False):
         return f"it counts actions, and the instance's costs are in {instance.costs.unit}"
     if instance.hand is not None and not getattr(planner, "holds", False):
-        return f"the hand holds {instance.hand!r} at the start"
+        return "the hand holds a block at the start"
     if problem.open_rest is not None and not getattr(planner, "open_goals", False):
         return problem.open_rest
     if (reason := why_not_settings(planner, settings)) is not None:

@@ -44,5 +44,5 @@ def open_rest(instance: Instance) -> str | None:
     if not isinstance(goal, OnGoal):
         return None
     if goal.ontable:
-        return f"the goal has {goal.ontable[0]!r} on the table, which a topple may bring about (`ontable`)"
-    return f"the goal has {goal.clear[0]!r} clear, whatever is beside it (`clear`)" if goal.clear else None
+        return "the goal has blocks on the table, which a topple may bring about (`ontable`)"
+    return "the goal has blocks clear, whatever is beside them (`clear`)" if goal.clear else None
