@@ -68,7 +68,7 @@ class CommandPlanner(ProblemPlanner):
             budget: seconds of wall time.
             on_incumbent: called with every better plan.
         """
-        engine = CommandEngine(_line(settings), _encoding(settings))
+        engine = CommandEngine(_line(settings), _encoding(settings), echoes=True)
         return engine.plan(problem, settings, budget, on_incumbent)
 
 
@@ -106,14 +106,16 @@ class CommandEngine(EnginePlanner):
 
     name = NAME
 
-    def __init__(self, line: CommandLine, encoding: str) -> None:
+    def __init__(self, line: CommandLine, encoding: str, *, echoes: bool = False) -> None:
         """Make the engine.
 
         Args:
             line: the program.
             encoding: what it is handed.
+            echoes: whether its last lines are printed on standard error, which a run keeps for its record.
         """
         super().__init__(UNLIMITED)
+        self._echoes = echoes
         self._command_line = line
         self.encoding = encoding
 
@@ -169,15 +171,10 @@ class CommandEngine(EnginePlanner):
                         plans.printed(steps)
                 code = program.returncode()
             finally:
-                _tell(program)
+                if self._echoes and program.tail:
+                    print("\n".join(program.tail), file=sys.stderr, flush=True)
         plans.end()
         return _ended(run, program, code)
-
-
-def _tell(program: EngineProcess) -> None:
-    """Print the last lines of the program, where those of the run's process are kept."""
-    if program.tail:
-        print("\n".join(program.tail), file=sys.stderr, flush=True)
 
 
 def _ended(run: Run, program: EngineProcess, code: int | None) -> Outcome:
