@@ -207,6 +207,7 @@ class _Plans:
         self._seen: dict[Path, tuple[int, int]] = {}
         self._doubts: dict[Path, str] = {}
         self._printed: list[str] = []
+        self._unread: list[Step] = []
         self.actions = action_names(run.task.domain_text)
 
     def look(self) -> None:
@@ -225,15 +226,20 @@ class _Plans:
                 self._doubts[file] = f"{file.name}: {doubt}"
 
     def printed(self, steps: list[Step]) -> None:
-        """Take a plan that was printed, unless the program writes files."""
+        """Take a plan that was printed; where the program writes files, only if there is none in them."""
         self.look()
-        doubt = None if self._seen else self._take(steps, None)
+        if self._seen:
+            self._unread = steps
+            return
+        doubt = self._take(steps, None)
         if doubt is not None:
             self._printed.append(doubt)
 
     def end(self) -> None:
         """Look once more; where there is no plan at all, what was wrong with the last one is kept."""
         self.look()
+        if self._unread and self._run.log.best is None:
+            self._take(self._unread, None)
         doubts = list(self._doubts.values())
         self._run.log.refusals += doubts or ([] if self._run.log.best is not None else self._printed[-1:])
 
