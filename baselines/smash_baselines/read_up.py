@@ -13,7 +13,8 @@ from smash_baselines.encodings import BY_DOMAIN, ENCODINGS, Encoding, action_nam
 from smash_baselines.names import Fact, Step
 from smash_baselines.read_problem import RawProblem, ReadProblem, interpret
 from smash_baselines.steps import actions_of, steps_of
-from smash_baselines.up_classical import Classical, match, read_classical
+from smash_baselines.up_classical import Classical, read_classical
+from smash_baselines.up_matching import match
 
 if TYPE_CHECKING:
     from unified_planning.model import FNode, Problem

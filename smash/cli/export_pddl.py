@@ -19,7 +19,8 @@ from smash.problem.model import PlanOptions
     default="chain",
     show_default=True,
     metavar="NAME",
-    help="How a topple is told: `conditional` (one action), `chain` (STRIPS actions), or one that is registered.",
+    help="How a topple is told: `conditional` (one action), `chain` (STRIPS actions), or one that is registered; "
+    "`pick-and-place` tells none, and no costs (with --no-topple).",
 )
 @click.option("--no-topple", is_flag=True, help="Pick and place only.")
 @click.option("--max-topple", type=click.IntRange(min=1), metavar="M", help="At most M blocks in one topple (chain).")
@@ -40,6 +41,7 @@ def command(
     Examples:
       smash export-pddl instance.json --encoding chain --out my-pddl
       smash export-pddl instance.json --encoding conditional --out my-pddl
+      smash export-pddl instance.json --encoding pick-and-place --no-topple --out my-pddl
       smash export-pddl scoop.json --without lift --out my-pddl
     """
     from smash_baselines.task import compile_instance

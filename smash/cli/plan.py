@@ -28,7 +28,7 @@ from smash.problem.problem import Problem
 
 @click.command("plan")
 @click.argument("instance", type=click.Path(path_type=Path))
-@click.option("--planner", show_default=DEFAULT, metavar="NAME", help="See `smash planners`.")
+@click.option("--planner", metavar="NAME", help=f"See `smash planners` (default: {DEFAULT}).")
 @command_option
 @encoding_option
 @click.option("--no-topple", is_flag=True, help="Pick and place only.")

@@ -82,6 +82,7 @@ def planned(command, instance=None, *, budget=20.0, options=None, encoding=None,
         ("pathlib.Path('sas_plan.1').write_text(DETOUR); pathlib.Path('sas_plan.2').write_text(MOVE)", ""),
         ("print('found it', MOVE, 'the end', sep='\\n')", ""),
         ("print('pick-base b01 s01 (1)', 'place-base b01 s02 (1)', 'Plan length: 2 step(s).', sep='\\n')", ""),
+        ("pathlib.Path('sas_plan').touch(); time.sleep(0.5); print(MOVE)", ""),
         ("print('0: (pick-base b01 s01) [1]', '1.0: (place-base b01 s02)', sep='\\n')", ""),
     ],
 )

@@ -68,7 +68,7 @@ class CommandPlanner(ProblemPlanner):
             budget: seconds of wall time.
             on_incumbent: called with every better plan.
         """
-        engine = CommandEngine(_line(settings), _encoding(settings))
+        engine = CommandEngine(_line(settings), _encoding(settings), echoes=True)
         return engine.plan(problem, settings, budget, on_incumbent)
 
 
@@ -106,14 +106,16 @@ class CommandEngine(EnginePlanner):
 
     name = NAME
 
-    def __init__(self, line: CommandLine, encoding: str) -> None:
+    def __init__(self, line: CommandLine, encoding: str, *, echoes: bool = False) -> None:
         """Make the engine.
 
         Args:
             line: the program.
             encoding: what it is handed.
+            echoes: whether its last lines are printed on standard error, which a run keeps for its record.
         """
         super().__init__(UNLIMITED)
+        self._echoes = echoes
         self._command_line = line
         self.encoding = encoding
 
@@ -169,15 +171,10 @@ class CommandEngine(EnginePlanner):
                         plans.printed(steps)
                 code = program.returncode()
             finally:
-                _tell(program)
+                if self._echoes and program.tail:
+                    print("\n".join(program.tail), file=sys.stderr, flush=True)
         plans.end()
         return _ended(run, program, code)
-
-
-def _tell(program: EngineProcess) -> None:
-    """Print the last lines of the program, where those of the run's process are kept."""
-    if program.tail:
-        print("\n".join(program.tail), file=sys.stderr, flush=True)
 
 
 def _ended(run: Run, program: EngineProcess, code: int | None) -> Outcome:
@@ -210,6 +207,7 @@ class _Plans:
         self._seen: dict[Path, tuple[int, int]] = {}
         self._doubts: dict[Path, str] = {}
         self._printed: list[str] = []
+        self._unread: list[Step] = []
         self.actions = action_names(run.task.domain_text)
 
     def look(self) -> None:
@@ -228,15 +226,20 @@ class _Plans:
                 self._doubts[file] = f"{file.name}: {doubt}"
 
     def printed(self, steps: list[Step]) -> None:
-        """Take a plan that was printed, unless the program writes files."""
+        """Take a plan that was printed; where the program writes files, only if there is none in them."""
         self.look()
-        doubt = None if self._seen else self._take(steps, None)
+        if self._seen:
+            self._unread = steps
+            return
+        doubt = self._take(steps, None)
         if doubt is not None:
             self._printed.append(doubt)
 
     def end(self) -> None:
         """Look once more; where there is no plan at all, what was wrong with the last one is kept."""
         self.look()
+        if self._unread and self._run.log.best is None:
+            self._take(self._unread, None)
         doubts = list(self._doubts.values())
         self._run.log.refusals += doubts or ([] if self._run.log.best is not None else self._printed[-1:])
 
