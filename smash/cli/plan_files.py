@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -141,16 +142,20 @@ def _is_ours(text: PlanText, instance: Instance, reading: Reading) -> bool:
 
 
 def _task(instance: Instance, text: PlanText) -> Any:
+    """Compile an instance as it was when a plan of ours went out: the steps say in which domain."""
     from smash_baselines.task import compile_instance
 
-    whole = any(step[0] in ("topple", "topple-base") for step in text.steps)
-    return compile_instance(instance, PlanOptions(), "conditional" if whole else "chain")
+    names = {step[0] for step in text.steps}
+    region = any(step[0] in ("pick", "place") and len(step) > 3 for step in text.steps)
+    topple = region or any(name.startswith("topple") for name in names)
+    encoding = "chain" if names.isdisjoint(("topple", "topple-base")) else "conditional"
+    return compile_instance(instance, PlanOptions(topple), encoding)
 
 
 def _from_encoding(instance: Instance, text: PlanText) -> PlanFile:
-    from smash_baselines.steps import actions_of
+    from smash_baselines.steps import actions_of, steps_of
 
-    at = 0
+    at, task = 0, _task(instance, text)
 
     def counted() -> Iterator[PddlStep]:
         nonlocal at
@@ -158,10 +163,14 @@ def _from_encoding(instance: Instance, text: PlanText) -> PlanFile:
             yield step
 
     try:
-        actions = tuple(actions_of(counted(), _task(instance, text)))
+        actions = tuple(actions_of(counted(), task))
     except IllegalAction as error:
         raise RefusedPlan(f"refused at step {at}: ({' '.join(text.steps[at - 1])}): {error}") from None
-    plan = _priced(instance, Plan(instance.name, PLANNER, PlanOptions(), "feasible", actions))
+    for number, (step, right) in enumerate(zip_longest(text.steps, steps_of(actions, task), fillvalue=()), start=1):
+        if step[: len(right)] != right or not step or not right:
+            wanted = f"; ({' '.join(right)}) would do what is done then" if right else ""
+            raise RefusedPlan(f"refused at step {number}: ({' '.join(step)}): does not fit the encoding{wanted}")
+    plan = _priced(instance, Plan(instance.name, PLANNER, task.options, "feasible", actions))
     verdict = Law(instance).check(actions)
     if not verdict.accepted:
         raise RefusedPlan(str(verdict))
