@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -25,6 +25,9 @@ from smash.problem.files.plans import plan_from_document
 from smash.problem.model import Action, Instance, PlanOptions, State
 from smash.problem.plan import Plan
 from smash.problem.rules import Law
+
+if TYPE_CHECKING:
+    from smash_baselines.task import PddlTask
 
 F = TypeVar("F", bound=Callable[..., Any])
 PLANNER = "imported"
@@ -89,8 +92,9 @@ def read_plan_file(path: Path, instance: Instance, problem: Path | None, domain:
     text = parse_plan(decoded(content, str(path)), str(path))
     reading = reading_for(instance, problem, domain)
     try:
-        if domain is None and _is_ours(text, instance, reading):
-            return _from_encoding(instance, text)
+        tasks = _tasks(instance, text, reading) if domain is None else []
+        if tasks:
+            return _from_encoding(instance, text, tasks)
         found = imported(instance, text, reading)
     except RefusedPlan as error:
         raise RefusedPlan(f"{path}: {error}") from None
@@ -131,42 +135,56 @@ def _require_same(problem: BlocksProblem, instance: Instance) -> None:
         raise MalformedFile(problem.where, f"starts from another arrangement than the instance {instance.name!r}")
 
 
-def _is_ours(text: PlanText, instance: Instance, reading: Reading) -> bool:
-    """Whether a plan is told in an encoding of the testbed, and not in the usual words."""
+def _tasks(instance: Instance, text: PlanText, reading: Reading) -> list[PddlTask]:
+    """Return the compiled problems that a plan may be of, the likeliest first; none where its words are the usual ones.
+
+    A plan does not say whether topple was allowed where it went out.
+    """
     interpreter = Interpreter(reading, {})
-    unknown = [step[0] for step in text.steps if not interpreter.knows(step[0])]
+    unknown = {step[0] for step in text.steps if not interpreter.knows(step[0])}
     if not unknown:
-        return False
-    actions = re.findall(r"\(:action\s+(\S+)", _task(instance, text).domain_text)
-    return any(name in actions for name in unknown)
-
-
-def _task(instance: Instance, text: PlanText) -> Any:
-    """Compile an instance as it was when a plan of ours went out: the steps say in which domain."""
+        return []
     from smash_baselines.task import compile_instance
 
-    names = {step[0] for step in text.steps}
     region = any(step[0] in ("pick", "place") and len(step) > 3 for step in text.steps)
-    topple = region or any(name.startswith("topple") for name in names)
-    encoding = "chain" if names.isdisjoint(("topple", "topple-base")) else "conditional"
-    return compile_instance(instance, PlanOptions(topple), encoding)
+    topple = region or any(name.startswith("topple") for name in unknown)
+    encodings = ("chain", "conditional") if unknown.isdisjoint(("topple", "topple-base")) else ("conditional", "chain")
+    options = [PlanOptions(topple), PlanOptions(not topple)]
+    tasks = [compile_instance(instance, option, encoding) for option in options for encoding in encodings]
+    actions = {name for task in tasks for name in re.findall(r"\(:action\s+(\S+)", task.domain_text)}
+    return [] if unknown.isdisjoint(actions) else tasks
 
 
-def _from_encoding(instance: Instance, text: PlanText) -> PlanFile:
+def _from_encoding(instance: Instance, text: PlanText, tasks: Sequence[PddlTask]) -> PlanFile:
+    """Return the plan that steps of an encoding are, by the first of some problems that it fits."""
+    refused: RefusedPlan | None = None
+    for task in tasks:
+        try:
+            return _from_task(instance, text, task)
+        except RefusedPlan as error:
+            refused = refused or error
+    assert refused is not None
+    raise refused
+
+
+def _from_task(instance: Instance, text: PlanText, task: PddlTask) -> PlanFile:
+    from smash_baselines.goal_words import JUDGED
     from smash_baselines.steps import actions_of, steps_of
 
-    at, task = 0, _task(instance, text)
+    at = 0
+    steps = [step for step in text.steps if not (task.encoding.judged and step[0] in JUDGED)]
 
     def counted() -> Iterator[PddlStep]:
         nonlocal at
-        for at, step in enumerate(text.steps, start=1):  # noqa: B007 - it is read where a step is refused
+        for at, step in enumerate(steps, start=1):  # noqa: B007 - it is read where a step is refused
             yield step
 
     try:
         actions = tuple(actions_of(counted(), task))
     except IllegalAction as error:
-        raise RefusedPlan(f"refused at step {at}: ({' '.join(text.steps[at - 1])}): {error}") from None
-    for number, (step, right) in enumerate(zip_longest(text.steps, steps_of(actions, task), fillvalue=()), start=1):
+        raise RefusedPlan(f"refused at step {at}: ({' '.join(steps[at - 1])}): {error}") from None
+    right_steps = [step for step in steps_of(actions, task) if not (task.encoding.judged and step[0] in JUDGED)]
+    for number, (step, right) in enumerate(zip_longest(steps, right_steps, fillvalue=()), start=1):
         if step[: len(right)] != right or not step or not right:
             wanted = f"; ({' '.join(right)}) would do what is done then" if right else ""
             raise RefusedPlan(f"refused at step {number}: ({' '.join(step)}): does not fit the encoding{wanted}")
