@@ -42,11 +42,13 @@ class PlanFile:
         plan: the plan.
         moves: its cost in moves, where its domain has no hand; None elsewhere.
         placed: the block that it left in the hand, for which a place was added.
+        ours: whether it is a plan file of the testbed.
     """
 
     plan: Plan
     moves: int | None = None
     placed: str | None = None
+    ours: bool = False
 
     def counted(self, costs: Costs) -> str:
         """Return its length and its cost in words."""
@@ -88,7 +90,7 @@ def read_plan_file(path: Path, instance: Instance, problem: Path | None, domain:
     """
     content = read_bytes(path)
     if content.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{"):
-        return PlanFile(plan_from_document(parse_json(content, str(path)), str(path)))
+        return PlanFile(plan_from_document(parse_json(content, str(path)), str(path)), ours=True)
     text = parse_plan(decoded(content, str(path)), str(path))
     reading = reading_for(instance, problem, domain)
     try:

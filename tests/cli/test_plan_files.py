@@ -66,6 +66,7 @@ def test_a_plan_goes_out_in_the_words_of_its_domain_is_replayed_by_it_and_comes_
     assert ("2 moves" in said) == (not dress.hand)
     for plan_file, options in (("sas", words(folder)), ("back.json", [])):
         assert run(validate, folder / "i.json", folder / plan_file, *options)[1] == 0
+    assert run(import_plan, folder / "i.json", folder / "ours.json", "--out", folder / "x.json")[1] == 2
     other = "moves" if dress.hand else "classical"
     refused = run(
         export_plan, folder / "i.json", folder / "ours.json", "--as", other, *words(folder), "--out", folder / "x"
