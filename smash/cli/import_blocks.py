@@ -13,6 +13,7 @@ from smash.cli import fail
 from smash.problem.blocksworld.folders import Found, Importer, found_files
 from smash.problem.blocksworld.placing import Placed, placed
 from smash.problem.blocksworld.problem import BlocksProblem
+from smash.problem.blocksworld.world import MOVE
 from smash.problem.errors import Infeasible, MalformedFile, SmashError, Unsupported
 from smash.problem.files.instances import write_instance
 
@@ -93,6 +94,9 @@ def how_read(problem: BlocksProblem) -> str:
         return f"read {how}: {way}"
     actions = ", ".join(dict.fromkeys(template.action for template in reading.templates))
     way = f"a hand ({actions})" if reading.hand else f"moves without a hand ({actions}): one move costs 2 here"
+    both = dict.fromkeys(template.action for template in reading.templates if reading.hand and template.kind == MOVE)
+    if both:
+        way += f", {', '.join(both)} a pick and a place at once, which costs 2 here"
     return f"recognised by its domain: {way}; {reading.said()}"
 
 

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import click
 
-from smash.cli import fail
 from smash.cli.plan_files import of_pddl, read_plan_file
-from smash.problem.errors import RefusedPlan
+from smash.problem.errors import MalformedFile, RefusedPlan
 from smash.problem.files.documents import require_writable
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import write_plan
@@ -38,11 +37,11 @@ def command(instance: Path, plan: Path, problem: Path | None, domain: Path | Non
     problem_here = read_instance(instance)
     found = read_plan_file(plan, problem_here, problem, domain)
     require_writable(out)
+    if found.ours:
+        raise MalformedFile(str(plan), "a plan file of the testbed already; steps of a PDDL planner are wanted")
     verdict = check_plan(problem_here, found.plan)
     if not verdict.accepted:
         raise RefusedPlan(f"{plan}: {verdict}")
-    if found.plan.status != "feasible":
-        fail(f"{plan}: a plan of the testbed already", 2)
     write_plan(found.plan, out)
     found.say()
     click.echo(f"{found.counted(problem_here.costs)} in {out}")

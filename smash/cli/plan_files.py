@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -25,6 +26,9 @@ from smash.problem.model import Action, Instance, PlanOptions, State
 from smash.problem.plan import Plan
 from smash.problem.rules import Law
 
+if TYPE_CHECKING:
+    from smash_baselines.task import PddlTask
+
 F = TypeVar("F", bound=Callable[..., Any])
 PLANNER = "imported"
 """The planner of a plan that came in from PDDL."""
@@ -38,11 +42,13 @@ class PlanFile:
         plan: the plan.
         moves: its cost in moves, where its domain has no hand; None elsewhere.
         placed: the block that it left in the hand, for which a place was added.
+        ours: whether it is a plan file of the testbed.
     """
 
     plan: Plan
     moves: int | None = None
     placed: str | None = None
+    ours: bool = False
 
     def counted(self, costs: Costs) -> str:
         """Return its length and its cost in words."""
@@ -84,12 +90,13 @@ def read_plan_file(path: Path, instance: Instance, problem: Path | None, domain:
     """
     content = read_bytes(path)
     if content.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{"):
-        return PlanFile(plan_from_document(parse_json(content, str(path)), str(path)))
+        return PlanFile(plan_from_document(parse_json(content, str(path)), str(path)), ours=True)
     text = parse_plan(decoded(content, str(path)), str(path))
     reading = reading_for(instance, problem, domain)
     try:
-        if domain is None and _is_ours(text, instance, reading):
-            return _from_encoding(instance, text)
+        tasks = _tasks(instance, text, reading) if domain is None else []
+        if tasks:
+            return _from_encoding(instance, text, tasks)
         found = imported(instance, text, reading)
     except RefusedPlan as error:
         raise RefusedPlan(f"{path}: {error}") from None
@@ -130,38 +137,60 @@ def _require_same(problem: BlocksProblem, instance: Instance) -> None:
         raise MalformedFile(problem.where, f"starts from another arrangement than the instance {instance.name!r}")
 
 
-def _is_ours(text: PlanText, instance: Instance, reading: Reading) -> bool:
-    """Whether a plan is told in an encoding of the testbed, and not in the usual words."""
+def _tasks(instance: Instance, text: PlanText, reading: Reading) -> list[PddlTask]:
+    """Return the compiled problems that a plan may be of, the likeliest first; none where its words are the usual ones.
+
+    A plan does not say whether topple was allowed where it went out.
+    """
     interpreter = Interpreter(reading, {})
-    unknown = [step[0] for step in text.steps if not interpreter.knows(step[0])]
+    unknown = {step[0] for step in text.steps if not interpreter.knows(step[0])}
     if not unknown:
-        return False
-    actions = re.findall(r"\(:action\s+(\S+)", _task(instance, text).domain_text)
-    return any(name in actions for name in unknown)
-
-
-def _task(instance: Instance, text: PlanText) -> Any:
+        return []
     from smash_baselines.task import compile_instance
 
-    whole = any(step[0] in ("topple", "topple-base") for step in text.steps)
-    return compile_instance(instance, PlanOptions(), "conditional" if whole else "chain")
+    region = any(step[0] in ("pick", "place") and len(step) > 3 for step in text.steps)
+    topple = region or any(name.startswith("topple") for name in unknown)
+    encodings = ("chain", "conditional") if unknown.isdisjoint(("topple", "topple-base")) else ("conditional", "chain")
+    options = [PlanOptions(topple), PlanOptions(not topple)]
+    tasks = [compile_instance(instance, option, encoding) for option in options for encoding in encodings]
+    actions = {name for task in tasks for name in re.findall(r"\(:action\s+(\S+)", task.domain_text)}
+    return [] if unknown.isdisjoint(actions) else tasks
 
 
-def _from_encoding(instance: Instance, text: PlanText) -> PlanFile:
-    from smash_baselines.steps import actions_of
+def _from_encoding(instance: Instance, text: PlanText, tasks: Sequence[PddlTask]) -> PlanFile:
+    """Return the plan that steps of an encoding are, by the first of some problems that it fits."""
+    refused: RefusedPlan | None = None
+    for task in tasks:
+        try:
+            return _from_task(instance, text, task)
+        except RefusedPlan as error:
+            refused = refused or error
+    assert refused is not None
+    raise refused
+
+
+def _from_task(instance: Instance, text: PlanText, task: PddlTask) -> PlanFile:
+    from smash_baselines.goal_words import JUDGED
+    from smash_baselines.steps import actions_of, steps_of
 
     at = 0
+    steps = [step for step in text.steps if not (task.encoding.judged and step[0] in JUDGED)]
 
     def counted() -> Iterator[PddlStep]:
         nonlocal at
-        for at, step in enumerate(text.steps, start=1):  # noqa: B007 - it is read where a step is refused
+        for at, step in enumerate(steps, start=1):  # noqa: B007 - it is read where a step is refused
             yield step
 
     try:
-        actions = tuple(actions_of(counted(), _task(instance, text)))
+        actions = tuple(actions_of(counted(), task))
     except IllegalAction as error:
-        raise RefusedPlan(f"refused at step {at}: ({' '.join(text.steps[at - 1])}): {error}") from None
-    plan = _priced(instance, Plan(instance.name, PLANNER, PlanOptions(), "feasible", actions))
+        raise RefusedPlan(f"refused at step {at}: ({' '.join(steps[at - 1])}): {error}") from None
+    right_steps = [step for step in steps_of(actions, task) if not (task.encoding.judged and step[0] in JUDGED)]
+    for number, (step, right) in enumerate(zip_longest(steps, right_steps, fillvalue=()), start=1):
+        if step[: len(right)] != right or not step or not right:
+            wanted = f"; ({' '.join(right)}) would do what is done then" if right else ""
+            raise RefusedPlan(f"refused at step {number}: ({' '.join(step)}): does not fit the encoding{wanted}")
+    plan = _priced(instance, Plan(instance.name, PLANNER, task.options, "feasible", actions))
     verdict = Law(instance).check(actions)
     if not verdict.accepted:
         raise RefusedPlan(str(verdict))

@@ -45,7 +45,9 @@ def reading_by_name(problem: ProblemText) -> tuple[Reading, tuple[str, ...]]:
     unknown = dict.fromkeys(
         atom[0]
         for atom in problem.facts
-        if atom[0] not in meanings and usual(atom[0]) not in ACTION_FACTS | TYPE_FACTS and atom[0] not in types
+        if atom[0] not in meanings
+        and usual(atom[0]) not in ACTION_FACTS
+        and not (len(atom) == 2 and (atom[0] in types or usual(atom[0]) in TYPE_FACTS))
     )
     unknown |= dict.fromkeys(function for function in problem.functions if function != "total-cost")
     return Reading(hand, meanings, table, others), tuple(unknown)

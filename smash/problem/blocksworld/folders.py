@@ -103,16 +103,15 @@ class Importer:
             SmashError: with one line that says what is wrong.
         """
         text = read_problem(found.path)
-        paths = [self.domain] if self.domain is not None else self._domains_of(text, found)
+        paths: list[Path | None] = [self.domain] if self.domain is not None else self._domains_of(text, found)
         refused: SmashError | None = None
-        for path in paths:
+        for path in paths or [None]:
             try:
-                return blocks_problem(text, self.recognizer(path))
+                return blocks_problem(text, None if path is None else self.recognizer(path))
             except SmashError as error:
                 refused = refused or error
-        if refused is not None:
-            raise refused
-        return blocks_problem(text)
+        assert refused is not None
+        raise refused
 
     def recognizer(self, path: Path) -> Recognizer:
         """Return the recognizer of a domain file; it is read once.
@@ -130,11 +129,11 @@ class Importer:
             raise recognizer
         return recognizer
 
-    def _domains_of(self, text: ProblemText, found: Found) -> list[Path]:
+    def _domains_of(self, text: ProblemText, found: Found) -> list[Path | None]:
         """Return what may be the domain of a problem, the likeliest first: in its folder, or above it up to the root.
 
-        It is the one that the problem names, or the one called `domain.pddl`. Several of one name are tried, first
-        those that are called like the problem's folder.
+        It is the one that the problem names, or the one called `domain.pddl`, or else none (None). Several of one name
+        are tried, first those that are called like the problem's folder.
         """
         folder = found.path.parent
         while self.beside:
@@ -145,7 +144,7 @@ class Importer:
             if named:
                 return [path for _, path in sorted(zip(alike, named, strict=True), key=lambda pair: -pair[0])]
             if own or folder in (found.root, folder.parent):
-                return own
+                return [*own, None]
             folder = folder.parent
         return []
 

@@ -230,8 +230,8 @@ def exported(instance: Instance, actions: Sequence[Action], reading: Reading, *,
         raise Unsupported("an instance with carriers has no classical form")
     if moves and instance.hand is not None:
         raise Unsupported("a start with a block in the hand has no form in moves; --as classical has one")
-    if (MOVE in kinds_of(reading)) != moves and not reading.by_name:
-        words = "moves blocks without a hand: --as moves" if not moves else "has a hand: --as classical"
+    if (MOVE if moves else TAKE) not in kinds_of(reading):
+        words = "has a hand: --as classical" if moves else "moves blocks without a hand: --as moves"
         raise Unsupported(f"the domain {words} fits it")
     speaker = Speaker(reading, pddl_names(instance, plain=True))
     steps = list(_classical(instance, actions))

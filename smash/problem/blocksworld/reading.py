@@ -128,7 +128,8 @@ class Reading:
         for relation in RELATIONS:
             for name, meaning in self.meanings.items():
                 if meaning.relation == relation:
-                    said.append(f"{relation if meaning.positive else f'not {relation}'} = {name}")
+                    turned = " (reversed)" if list(meaning.places) != sorted(meaning.places) else ""
+                    said.append(f"{relation if meaning.positive else f'not {relation}'} = {name}{turned}")
         if self.table is not None:
             said.append(f"the table = {self.table}")
         return ", ".join(said)

@@ -7,7 +7,7 @@ are seen to be about the right ones. What actions cannot tell apart they do to t
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -69,11 +69,18 @@ class Trial:
     @cached_property
     def graph(self) -> list[tuple[Arrangement, list[tuple[Step, int]]]]:
         """Every state, with its steps and the numbers of the states after them."""
-        states = list(arrangements(self.blocks, hand=self.hand))
-        number = {state.key(): at for at, state in enumerate(states)}
         return [
-            (state, [(step, number[later.key()]) for step, later in steps(state, hand=self.hand)]) for state in states
+            (state, [(step, self._number[later.key()]) for step, later in steps(state, hand=self.hand)])
+            for state in self._states
         ]
+
+    @cached_property
+    def _states(self) -> list[Arrangement]:
+        return list(arrangements(self.blocks, hand=self.hand))
+
+    @cached_property
+    def _number(self) -> dict[Hashable, int]:
+        return {state.key(): at for at, state in enumerate(self._states)}
 
     @cached_property
     def _typed(self) -> dict[str, Types]:
@@ -198,8 +205,8 @@ class Trial:
             for at in self._numbers:
                 if (missing := self._missing_at(meanings, at, of_table)) is not None:
                     return Misfit(f"no action {step_words(missing)} as soon as the table is another")
+                by_code = {codes[later]: step for step, later in [*self._moves(at), *self.graph[at][1]]}
                 for one, code, after_it in self._results(meanings, at, of_table):
-                    by_code = {codes[later]: step for step, later in self.graph[at][1]}
                     if code not in by_code and code != codes[at]:
                         return Misfit(f"the action {one.action.name!r} does what no step of a blocks world does")
                     if code in by_code:
@@ -208,6 +215,13 @@ class Trial:
                         seen.add(after_it)
                         waiting.append(after_it)
         return found
+
+    def _moves(self, at: int) -> list[tuple[Step, int]]:
+        """Return what a hand does in two steps, and an action may do at once: a block is taken and put elsewhere."""
+        state = self.graph[at][0]
+        if not self.hand or state.held is not None:
+            return []
+        return [(step, self._number[later.key()]) for step, later in steps(state, hand=False)]
 
     def _results(
         self, meanings: Meanings, at: int, of_table: frozenset[Atom]
