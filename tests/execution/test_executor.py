@@ -1,12 +1,15 @@
 import dataclasses
 
+import numpy as np
 import pytest
 
 from smash.execution.executor import Executor, observed_instance
+from smash.execution.physics.world import STEP
 from smash.execution.policy import OPEN
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.scene.tabletop import Friction
 from smash.execution.viewing.recording import Recording
+from smash.motion.robot import ACCELERATION, JERK, LOWER, UPPER, VELOCITY
 from smash.problem import Law, Pick, Place, Plan, PlanOptions, PositionsGoal, make_instance
 from smash.problem.errors import Unsupported
 from smash.problem.files.documents import parse_json
@@ -152,6 +155,15 @@ def test_the_open_pipeline_stops_where_a_block_has_moved_that_a_later_motion_cou
 def test_nothing_is_disturbed_or_touched_where_all_goes_well():
     episode = run(swapped_pair(), swapped_plan(), policy=OPEN)
     assert [(row.disturbed, row.touched) for row in episode.actions] == [({}, [])] * 5
+
+
+def test_what_is_sent_to_the_arm_keeps_the_panda_s_limits_jerk_included():
+    executor = Executor(swapped_pair(), swapped_plan(), default_scene(), policy=OPEN)
+    assert executor.run().success
+    sent = np.array([joints for _, joints, _ in executor.world.recorded])
+    for order, limit in enumerate((VELOCITY, ACCELERATION, JERK), start=1):
+        assert np.all(np.abs(np.diff(sent, n=order, axis=0)) / STEP**order <= limit)
+    assert np.all((sent >= LOWER) & (sent <= UPPER))
 
 
 def test_a_start_with_a_block_in_the_hand_is_refused():
