@@ -17,11 +17,12 @@ JOINTS = 7
 ARM_JOINTS = tuple(f"panda_joint{number}" for number in range(1, JOINTS + 1))
 TOOL_FRAME = "panda_grasptarget"
 
-# The manufacturer's limits: positions [rad], velocities [rad/s], accelerations [rad/s^2], one per joint.
+# The manufacturer's limits: positions [rad], velocities [rad/s], accelerations [rad/s^2], jerks [rad/s^3], per joint.
 LOWER = np.array([-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973])
 UPPER = np.array([2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973])
 VELOCITY = np.array([2.175, 2.175, 2.175, 2.175, 2.61, 2.61, 2.61])
 ACCELERATION = np.array([15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0])
+JERK = np.array([7500.0, 3750.0, 5000.0, 6250.0, 7500.0, 10000.0, 10000.0])
 
 READY = np.array([0.0, -np.pi / 4, 0.0, -3 * np.pi / 4, 0.0, np.pi / 2, np.pi / 4])
 MAX_OPENING = 0.04

@@ -3,6 +3,9 @@
 A straight joint segment gets the fastest synchronised trapezoid; any other path goes through toppra (time-optimal path
 parameterisation by reachability analysis) on a spline through closely spaced points, since a spline through sparse ones
 leaves the path.
+
+Both switch the acceleration at once, which no arm does. So every trajectory is averaged over a moment: what is bounded
+stays bounded, and the acceleration passes from one value to the next in that moment (`eased`).
 """
 
 from __future__ import annotations
@@ -20,6 +23,12 @@ KNOT_STEP = 0.01
 """Trajectories are stored at this interval [s]."""
 SPLINE_STEP = 0.05
 """Largest joint distance between the spline's points [rad]."""
+EASED = 0.03
+"""The moment in which the acceleration passes from one value to another [s]: so much longer a motion takes."""
+EASED_STEP = 0.001
+"""The averages over it are sums at this interval [s]."""
+MOST_ON_CURVES = 0.9
+"""Share of the acceleration limits that toppra is given at most: between its grid points it goes a tenth beyond."""
 FEWEST_GRIDPOINTS, MOST_GRIDPOINTS = 40, 150
 
 
@@ -84,7 +93,7 @@ class Trajectory:
 
 
 def time_path(path: Path, pace: Pace = FREE) -> Trajectory:
-    """The fastest trajectory along the path that begins and ends at rest and keeps the pace.
+    """The fastest trajectory along the path that begins and ends at rest and keeps the pace, `eased`.
 
     Args:
         path: Where.
@@ -96,8 +105,27 @@ def time_path(path: Path, pace: Pace = FREE) -> Trajectory:
     if path.length < 1e-9:
         return Trajectory(np.zeros(1), path.waypoints[:1], np.zeros((1, path.waypoints.shape[1])))
     if len(path.waypoints) == 2 and pace.tool_speed is None:
-        return trapezoid(path.start, path.end, pace)
-    return _toppra(path.waypoints, pace)
+        return eased(trapezoid(path.start, path.end, pace))
+    return eased(_toppra(path.waypoints, pace))
+
+
+def eased(trajectory: Trajectory) -> Trajectory:
+    """The average of a trajectory over the last `EASED` seconds, at rest at both ends as it is.
+
+    Velocity and acceleration are averages too, so they keep every limit that they kept before, and the jerk is at most
+    the greatest change of acceleration over `EASED`: within the Panda's limits at any pace. With an acceleration of at
+    most a [rad/s^2] the path is left by a EASED^2 / 24, a fraction of a milliradian.
+    """
+    duration = trajectory.duration + EASED
+    times = np.append(np.arange(0.0, duration - KNOT_STEP / 2, KNOT_STEP), duration)
+    before = np.linspace(0.0, EASED, round(EASED / EASED_STEP) + 1)
+    weights = np.full(len(before), 1.0 / (len(before) - 1))
+    weights[[0, -1]] /= 2
+    past = trajectory.at((times[:, None] - before).ravel()).reshape(len(times), len(before), -1)
+    positions = np.einsum("tbj,b->tj", past, weights)
+    velocities = (past[:, 0] - past[:, -1]) / EASED
+    positions[[0, -1]], velocities[[0, -1]] = trajectory.positions[[0, -1]], 0.0
+    return Trajectory(times, positions, velocities)
 
 
 def trapezoid(begin: NDArray[np.float64], end: NDArray[np.float64], pace: Pace = FREE) -> Trajectory:
@@ -123,7 +151,7 @@ def trapezoid(begin: NDArray[np.float64], end: NDArray[np.float64], pace: Pace =
 
 
 def time_gently(path: Path, length: float, speed: float, acceleration: float) -> Trajectory:
-    """A trapezoid for a path whose waypoints are evenly spaced in the world: what is carried is hardly shaken.
+    """An eased trapezoid for a path whose waypoints are evenly spaced in the world: what is carried is hardly shaken.
 
     Args:
         path: Where; between two neighbouring waypoints a point of what is carried moves the same way.
@@ -149,7 +177,7 @@ def time_gently(path: Path, length: float, speed: float, acceleration: float) ->
     spline = CubicSpline(at, waypoints)
     positions, velocities = spline(part), spline(part, 1) * (rise * (rising - falling))[:, None]
     positions[-1], velocities[-1] = waypoints[-1], 0.0
-    return Trajectory(times, positions, velocities)
+    return eased(Trajectory(times, positions, velocities))
 
 
 def _toppra(waypoints: Waypoints, pace: Pace) -> Trajectory:
@@ -166,7 +194,7 @@ def _toppra(waypoints: Waypoints, pace: Pace) -> Trajectory:
     points = points[np.concatenate([[True], np.any(np.abs(np.diff(points, axis=0)) > 1e-9, axis=1)])]
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     spline = toppra.SplineInterpolator(arc, points)
-    velocity, acceleration = pace.velocity * VELOCITY, pace.acceleration * ACCELERATION
+    velocity, acceleration = pace.velocity * VELOCITY, min(pace.acceleration, MOST_ON_CURVES) * ACCELERATION
     constraints = [
         JointVelocityConstraint(np.column_stack([-velocity, velocity])),
         JointAccelerationConstraint(np.column_stack([-acceleration, acceleration])),

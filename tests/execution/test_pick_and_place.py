@@ -5,7 +5,7 @@ import pytest
 
 from smash.execution.actions.arm_motions import RELEASE_HEIGHT, ArmMotions
 from smash.execution.actions.grasps import CENTRED
-from smash.execution.actions.pick_and_place import PickAndPlace
+from smash.execution.actions.pick_and_place import ROOM, PickAndPlace
 from smash.execution.scene.block_pose import QUARTER, BlockPose, standing
 from smash.execution.scene.scene_file import default_scene
 from smash.motion.collision import CONTACT_MARGIN, CollisionChecker
@@ -98,3 +98,14 @@ def test_a_block_at_the_foot_of_a_tower_has_no_centred_grasp(arm):
     hands = [CENTRED.tool(block.position, block.yaw + turn * QUARTER) for turn in range(4)]
     checker = CollisionChecker(scene, HandState(min(arm.openings)), CONTACT_MARGIN)
     assert not any(checker.free(joints) for tool in hands for joints in inverse(tool, READY, count=3))
+
+
+@pytest.mark.parametrize("yaw", np.linspace(0.0, np.pi / 2, 7))
+@pytest.mark.parametrize("away", [0.049, 0.055, 0.061, 0.067])
+def test_the_open_hand_comes_down_beside_neighbours_and_not_on_their_edges(arm, hand, yaw, away):
+    """Where any grasp has room, none is taken that grazes."""
+    block = standing(0.35, 0.25, SIDE / 2, 0.2)
+    scene = arm.scene({"a": block, "b": standing(0.35 + away, 0.25, SIDE / 2, yaw)})
+    segments, _ = hand.pick(READY, "a", block, scene)
+    down = [segment for segment in segments if isinstance(segment, Move)][-2]
+    assert CollisionChecker(scene.without(["a"]), down.hand, ROOM - 1e-6).free(down.path.end)

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from smash.motion.paths import Path, round_corners
-from smash.motion.robot import ACCELERATION, READY, VELOCITY
-from smash.motion.timing import Pace, time_path, trapezoid
+from smash.motion.robot import ACCELERATION, JERK, READY, VELOCITY
+from smash.motion.timing import EASED, Pace, eased, time_path, trapezoid
 
 CORNERS = np.stack([READY, READY + 0.4, READY + np.array([0.8, 0.2, 0, 0.1, 0, 0.3, -0.4])])
 
@@ -20,6 +20,31 @@ def test_a_trajectory_starts_and_ends_at_rest_and_keeps_the_limits(path, pace):
     assert np.allclose(trajectory.velocities[[0, -1]], 0.0)
     assert np.all(np.abs(velocity) <= pace.velocity * VELOCITY * 1.02)
     assert np.quantile(np.abs(acceleration) / (pace.acceleration * ACCELERATION), 0.98) <= 1.1
+
+
+@pytest.mark.parametrize("path", [Path(CORNERS[:2], "straight"), Path(CORNERS, "tree")])
+@pytest.mark.parametrize("pace", [Pace(), Pace(0.25, 0.1), Pace(1.0, 1.0), Pace(1.0, 0.5, tool_speed=0.3)])
+def test_a_trajectory_keeps_the_panda_s_limits_at_the_rate_of_its_controller_jerk_included(path, pace):
+    """Commands go to a Panda every millisecond; at rest before and afterwards."""
+    step = 1e-3
+    rest = np.repeat(path.start[None], 5, axis=0), np.repeat(path.end[None], 5, axis=0)
+    samples = np.vstack([rest[0], time_path(path, pace).sample(step), rest[1]])
+    velocity = np.diff(samples, axis=0) / step
+    acceleration = np.diff(velocity, axis=0) / step
+    jerk = np.diff(acceleration, axis=0) / step
+    assert np.all(np.abs(velocity) <= VELOCITY * 1.01)
+    assert np.all(np.abs(acceleration) <= ACCELERATION * 1.02)
+    assert np.all(np.abs(jerk) <= JERK)
+
+
+def test_an_eased_trajectory_takes_a_moment_longer_and_hardly_leaves_the_path():
+    steep = trapezoid(READY, READY + np.array([1.0, 0.3, 0, 0, 0, 0, 0]), Pace(1.0, 1.0))
+    soft = eased(steep)
+    assert soft.duration == pytest.approx(steep.duration + EASED)
+    direction = np.array([1.0, 0.3, 0, 0, 0, 0, 0]) / np.hypot(1.0, 0.3)
+    off = soft.positions - READY
+    assert np.abs(off - (off @ direction)[:, None] * direction).max() < 1e-9
+    assert np.abs(soft.at(soft.times) - steep.at(soft.times - EASED / 2)).max() <= 15.0 * EASED**2 / 24 + 1e-4
 
 
 def test_a_straight_segment_runs_at_the_limit_of_its_slowest_joint():

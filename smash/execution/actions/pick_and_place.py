@@ -30,6 +30,10 @@ from smash.problem.errors import ExecutionFailure
 HOVERS = (0.10, 0.06, 0.03)
 """Lengths of the straight descent to a block [m], the long one first."""
 SOLUTIONS = 3
+ROOM = 0.002
+"""Between the open hand and all else, where there is a grasp with so much [m]: a finger comes down on nothing."""
+RESORTS = ((ROOM, True), (CONTACT_MARGIN, True), (CONTACT_MARGIN, False))
+"""Room, and whether nothing that leans on the block is shaken off: a finger grazes a neighbour rather than that."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,26 +73,25 @@ class PickAndPlace:
             NoIk, NoMotion: where no grasp can be reached; the message is about the centred one with most room.
         """
         problem: ExecutionFailure | None = None
-        # A block that leans on the one to be picked is shaken off in the last resort alone.
-        for alone, grasp in product((True, False), GRASPS):
+        for (room, alone), grasp in product(RESORTS, GRASPS):
             try:
-                return self._pick(start, block, pose, scene, grasp, alone), grasp
+                return self._pick(start, block, pose, scene, grasp, room, alone), grasp
             except ExecutionFailure as failure:
                 problem = problem or failure
         assert problem is not None
         raise problem
 
     def _pick(
-        self, start: Vector, block: str, pose: BlockPose, scene: Scene, grasp: Grasp, alone: bool
+        self, start: Vector, block: str, pose: BlockPose, scene: Scene, grasp: Grasp, room: float, alone: bool
     ) -> list[Segment]:
-        """With one grasp; `alone`: without shaking off what leans on the block.
+        """With one grasp and so much room for the hand; `alone`: without shaking off what leans on the block.
 
         Raises:
             NoIk, NoMotion: where there is no motion for it.
         """
         near = scene.without([block])
         problem: ExecutionFailure | None = None
-        for approach in self._approaches(start, pose.position, pose.yaw, near, grasp, alone):
+        for approach in self._approaches(start, pose.position, pose.yaw, near, grasp, room, alone):
             open_hand = HandState(approach.opening)
             try:
                 transfer = self._arm.transfer(start, approach.line.start, scene, open_hand)
@@ -118,8 +121,10 @@ class PickAndPlace:
             NoIk, NoMotion: where there is none.
         """
         point = target.position + np.array([0.0, 0.0, RELEASE_HEIGHT])
-        for approach in self._approaches(start, point, target.yaw, scene.without([block]), grasp, True):
-            return approach
+        near = scene.without([block])
+        for room in (ROOM, CONTACT_MARGIN):
+            for approach in self._approaches(start, point, target.yaw, near, grasp, room, True):
+                return approach
         x, y, z = (float(value) for value in target.position)
         raise NoMotion(f"no room for the hand to put a block down at x {x:.2f}, y {y:.2f}, z {z:.2f} m")
 
@@ -158,6 +163,7 @@ class PickAndPlace:
         yaw: float,
         near: Scene,
         grasp: Grasp,
+        room: float,
         loaded: bool,
     ) -> Iterable[Approach]:
         """Ways down to a block whose middle is at a point, those with most room first; then those near to `start`.
@@ -168,6 +174,7 @@ class PickAndPlace:
             yaw: Of a side of the block [rad].
             near: All else.
             grasp: Where the hand is on the block.
+            room: The least between the open hand and all else [m].
             loaded: Whether the way must be free with the block in the hand too.
 
         Raises:
@@ -182,7 +189,7 @@ class PickAndPlace:
             checker = CollisionChecker(near, HandState(opening), 0.0)
             for joints in solutions:
                 clearance = checker.slack(joints)
-                if clearance > CONTACT_MARGIN:
+                if clearance > room:
                     far = float(np.abs(joints - start).max())
                     ranked.append((-min(clearance, ENOUGH_CLEARANCE), -opening, far, clearance, joints))
             if any(entry[0] <= -ENOUGH_CLEARANCE for entry in ranked):

@@ -73,6 +73,8 @@ class World:
         """What arm [rad], shape (7,), and fingers [m from the middle] were sent to, with the time [s] of each step."""
         self.meant: frozenset[BodyName] = frozenset()
         """What the arm may touch at present."""
+        self.on_step: Frame | None = None
+        """Called after each step of the simulation, for measurements."""
         self._touched: dict[str, None] = {}
         self._steps = 0
         self._after_close: Callable[[], None] | None = None
@@ -188,6 +190,8 @@ class World:
         self._steps += 1
         if self._steps % CONTACTS_EVERY == 0:
             self._note_contacts()
+        if self.on_step is not None:
+            self.on_step(self)
         if self._on_frame is not None and self.time >= self._next_frame:
             self._next_frame += self._frame_interval
             self._on_frame(self)
