@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from time import perf_counter
 from typing import ClassVar
 
 from smash.planners.astar import BeamSearch, StateSearch, search_law_states
-from smash.planners.greedy import greedy_method, greedy_plans
+from smash.planners.greedy import GreedyRun, end_of
 from smash.planners.protocol import (
     HIGHS,
     SOLVERS,
@@ -17,6 +18,7 @@ from smash.planners.protocol import (
     Relay,
     Settings,
     SolveLog,
+    anything,
     left,
     not_plain,
     plain,
@@ -41,6 +43,8 @@ FEW_BLOCKS = 40
 """With more blocks than this the search over states and the layered model prove nothing more."""
 LARGE_SHARE = 0.6
 """Share of the remaining budget for the precedence graph with more blocks: the beam gets the rest."""
+LEAST_SHARE = 0.1
+"""What the precedence graph gets in any case, where greedy passes are left that take long."""
 FIRST_SHARE, FIRST_SECONDS = 0.1, 1.0
 """The least of both is for the first beam, and for more greedy passes, before the exact search: a better plan lets
 that leave out more."""
@@ -86,18 +90,18 @@ class SmashPlanner(MethodPlanner):
         """Return the parts in their order, which depends on the size."""
         part = _Parts(settings)
         blocks = len(problem.instance.blocks)
-        precedence_share = PRECEDENCE_SHARE if blocks <= FEW_BLOCKS else LARGE_SHARE
         wide_share = WIDE_SEARCH_SHARE if blocks <= FEW_BLOCKS else LARGE_SEARCH_SHARE
-        precedence = Method("precedence", plain, part.precedence, precedence_share)
+        precedence = Method("precedence", plain, part.precedence, part.precedence_share(problem))
         small = (Method("search", plain, part.search, SEARCH_SHARE), precedence)
         large = (
             precedence,
+            Method("greedy to its end", plain, part.greedy),
             Method("greedy passes", plain, part.greedy_passes, FIRST_SHARE, FIRST_SECONDS),
             Method("first beam", plain, part.beams, FIRST_SHARE, FIRST_SECONDS),
             Method("search", plain, part.search, wide_share),
         )
         return (
-            greedy_method(settings, GREEDY_SHARE),
+            Method("greedy", anything, part.greedy, GREEDY_SHARE),
             Method("light search", plain, part.light_search, most=LIGHT_SECONDS),
             *(small if blocks <= SMALL_BLOCKS else large),
             Method("the law's states", not_plain, search_law_states, SEARCH_SHARE),
@@ -106,6 +110,7 @@ class SmashPlanner(MethodPlanner):
             Method("beam", plain, part.beams, lambda: 1.0 if part.search_has_ended else BEAM_SHARE),
             Method("search to the end", plain, part.search),
             Method("beam to the end", plain, part.beams),
+            Method("greedy passes to the end", plain, part.greedy_passes),
         )
 
 
@@ -123,16 +128,32 @@ class _Parts:
         self.settings = settings
         self._search: StateSearch | None = None
         self._beam: BeamSearch | None = None
+        self._greedy: GreedyRun | None = None
+
+    def precedence_share(self, problem: Problem) -> float:
+        """Return the share of the time left that the precedence graph may take."""
+        return PRECEDENCE_SHARE if len(problem.instance.blocks) <= FEW_BLOCKS else LARGE_SHARE
 
     @property
     def search_has_ended(self) -> bool:
         """Whether the exact search over states can do no more."""
         return self._search is not None and self._search.ended is not None
 
+    def greedy(self, problem: Problem, log: SolveLog, until: float) -> None:
+        """Plan as the greedy planner alone does: with the time for it no plan is dearer than its."""
+        self._greedy_on(problem, log, until, patient=False, first_until=end_of(until, GREEDY_SHARE))
+
     def greedy_passes(self, problem: Problem, log: SolveLog, until: float) -> None:
         """Give the greedy planner some more passes: cheap, and what helps most where locations are few."""
-        for actions in greedy_plans(problem, until, self.settings.seed, patient=True):
+        self._greedy_on(problem, log, until, patient=True, first_until=until)
+
+    def _greedy_on(self, problem: Problem, log: SolveLog, until: float, *, patient: bool, first_until: float) -> None:
+        if self._greedy is None:
+            self._greedy = GreedyRun(problem, self.settings.seed)
+        for actions in self._greedy.plans(until, patient=patient, first_until=first_until):
             log.offer(actions, "greedy")
+            if log.proven:
+                break
 
     def light_search(self, problem: Problem, log: SolveLog, until: float) -> None:
         """Search over states as far as that needs no compiled code."""
@@ -175,6 +196,10 @@ class _Parts:
         """Bound the cost by the precedence graph, and schedule its choices."""
         from smash.planners.precedence.bound import ORIGIN, precedence_bound
 
+        if self._greedy is not None:  # what greedy passes are left keep their time, if that is not nearly all
+            began = perf_counter()
+            rest = end_of(until, self.precedence_share(problem)) - began
+            until = min(until, began + max(LEAST_SHARE * rest, rest - self._greedy.seconds_left()))
         precedence_bound(
             problem,
             until,

@@ -2,11 +2,13 @@
 
 import dataclasses
 import math
+from time import perf_counter
 
 import pytest
 from hypothesis import given, settings
 
-from smash.planners.portfolio import SmashPlanner
+from smash.planners.greedy import greedy_plans
+from smash.planners.portfolio import SmashPlanner, _Parts
 from smash.planners.precedence import PrecedencePlanner
 from smash.planners.protocol import Settings, SolveLog, SolveOptions
 from smash.problem import Costs, Law, PlanOptions, make_instance
@@ -14,6 +16,7 @@ from smash.problem.model import StacksGoal
 from smash.problem.problem import Problem
 from smash.problem.sets.generators import generate
 from smash.problem.sets.suites import read_suite
+from tests.arrangements import wide
 from tests.oracle import optimal_cost
 from tests.strategies import EVERY_KIND, instances, plan_options
 
@@ -117,6 +120,31 @@ def test_a_beam_that_left_nothing_out_proves_the_plan_under_its_own_name(monkeyp
     assert result.cost == optimal_cost(instance, PlanOptions(topple=False))
 
 
+@pytest.mark.parametrize(("blocks", "stacks", "buffers"), [(60, 4, 0), (90, 6, 2), (120, 10, 1)])
+def test_with_the_time_for_it_no_plan_is_dearer_than_that_of_greedy_alone(blocks, stacks, buffers, monkeypatch):
+    monkeypatch.setattr("smash.planners.portfolio.end_of", lambda until, share: math.inf)
+    problem = Problem(wide(blocks, stacks, 3, buffers), PlanOptions(topple=False))
+    alone = [len(actions) for actions in greedy_plans(problem, math.inf)]
+    parts, log = _Parts(Settings()), SolveLog(problem)
+    parts.greedy(problem, log, -math.inf)  # no time but for the first plan
+    assert log.cost == alone[0]
+    parts.greedy(problem, log, math.inf)
+    assert log.cost == alone[-1]
+
+
+def test_the_precedence_graph_leaves_greedy_passes_the_time_that_they_take(monkeypatch):
+    monkeypatch.setattr("smash.planners.greedy.passes.GRACE", 60.0)
+    problem = Problem(wide(60, 4, 3, 60), PlanOptions(topple=False))
+    parts, log, ends = _Parts(Settings()), SolveLog(problem), []
+    monkeypatch.setattr("smash.planners.precedence.bound.precedence_bound", lambda *given, **_: ends.append(given[1]))
+    parts.greedy(problem, log, -math.inf)
+    for seconds in (3.0, 1e6):
+        monkeypatch.setattr("smash.planners.greedy.GreedyRun.seconds_left", lambda run, seconds=seconds: seconds)
+        parts.precedence(problem, log, perf_counter() + 6.0)  # six tenths of ten seconds
+    assert ends[0] - perf_counter() == pytest.approx(6.0, abs=1.0)
+    assert ends[1] - perf_counter() == pytest.approx(1.0, abs=1.0)
+
+
 def sized(blocks, *, is_plain=True):
     """Return a problem of so many blocks, plain or with another cost."""
     costs = Costs() if is_plain else Costs({"pick": 3})
@@ -130,7 +158,12 @@ def rows(problem):
 
 
 FIRST = [("greedy", 0.1, math.inf), ("light search", 1.0, 0.12)]
-LAST = [("beam", 0.7, math.inf), ("search to the end", 1.0, math.inf), ("beam to the end", 1.0, math.inf)]
+LAST = [
+    ("beam", 0.7, math.inf),
+    ("search to the end", 1.0, math.inf),
+    ("beam to the end", 1.0, math.inf),
+    ("greedy passes to the end", 1.0, math.inf),
+]
 LAYERED = ("layered", 0.5, math.inf)
 
 
@@ -148,6 +181,7 @@ def test_with_more_blocks_beams_help_and_beyond_forty_the_layered_model_proves_n
 ):
     exact = [
         ("precedence", precedence, math.inf),
+        ("greedy to its end", 1.0, math.inf),
         ("greedy passes", 0.1, 1.0),
         ("first beam", 0.1, 1.0),
         ("search", search, math.inf),

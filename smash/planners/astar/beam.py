@@ -78,7 +78,7 @@ class BeamSearch:
             if running.over:
                 self._finish(running)
             if moves is not None:
-                return self._take(running, moves)
+                return self._take(running, moves, deadline)
         return None
 
     def _begin(self, deadline: float) -> _Pass | None:
@@ -106,9 +106,9 @@ class BeamSearch:
         assert self._memory is not None
         return self._memory // (8 * max(1, self.upper))
 
-    def _take(self, running: _Pass, moves: list[Move]) -> list[Step]:
+    def _take(self, running: _Pass, moves: list[Move], deadline: float) -> list[Step]:
         """Return the steps of a plan found, shortened where that is possible."""
-        steps = shorten(running.engine.steps(self.problem, moves))
+        steps = shorten(running.engine.steps(self.problem, moves), deadline)
         self.upper = min(self.upper, cost_of(steps))
         return steps
 

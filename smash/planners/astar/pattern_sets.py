@@ -24,7 +24,7 @@ SHARE = 400_000
 """Entries looked at between two looks at the clock."""
 ENTRY_SECONDS = 2e-6
 """About what an entry takes to be reached."""
-TABLES = 60
+TABLES = 12
 """The largest tables are taken of which so many can be built in the time."""
 SUMS = 2
 """Partitions of the blocks whose sums are kept."""

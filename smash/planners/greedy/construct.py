@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Sequence
+from time import perf_counter
 
 from smash.problem.views.numbered import ON_TABLE, TOPPLE, Numbered, Step
 from smash.problem.views.targets import Piles, Resting
@@ -68,14 +69,24 @@ class Construction:
                 self._push(block, location)
         self.agenda = list(range(len(target)))
 
-    def run(self, first: Sequence[int] = ()) -> list[Step]:
-        """Topple the stacks `first` whole, then work until every target pile is built; return the steps."""
+    def run(self, first: Sequence[int] = (), deadline: float = math.inf) -> list[Step] | None:
+        """Topple the stacks `first` whole, then work until every target pile is built.
+
+        Args:
+            first: stacks.
+            deadline: when to give up [s, `perf_counter`].
+
+        Returns:
+            The steps, or None where it was given up.
+        """
         for location in first:
             while self._must_leave(location):
                 self._topple(location)
         self._direct_moves()
         while (goal := self._next_goal()) is not None:
             block = self.target[goal][self.done[goal]]
+            if perf_counter() > deadline:
+                return None
             while self.finished_at[block] == NEVER:
                 self._dig(block, goal)
                 self._direct_moves()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 import random
 from collections.abc import Iterator, Sequence
 from time import perf_counter
@@ -20,6 +21,8 @@ PASSES = 12
 """Passes after the first one, each with what the best plan so far taught (its times, its topples)."""
 NOISE = 0.6
 """How much a pass's choices are disturbed, at most."""
+GRACE = 0.3
+"""Seconds that a first plan may take longer than there is time: budgets are kept within half a second."""
 LATER_NOISE = (0.3, 0.6, 1.0, 2.0)
 """The same for the passes after those, in turn."""
 
@@ -29,77 +32,140 @@ def greedy_plans(
 ) -> Iterator[tuple[Action, ...]]:
     """Yield plans of any problem, each better than the one before, by way of its plain twin.
 
-    None at all only where pick, place and topple alone reach the goal by no plan.
-
     Args:
         problem: what to plan.
-        deadline: when to stop improving [s, clock of `perf_counter`]; the first plan always comes, and no pass is
-            begun that would not end in time.
+        deadline: when to stop [s, clock of `perf_counter`]; a first plan may take `GRACE` longer, and no pass is begun
+            that would not end in time.
         seed: for the passes with disturbed choices.
         patient: whether to go on with disturbed passes until `deadline`.
     """
-    twin = problem.twin
-    if twin.infeasible is None:
-        for steps in greedy_steps(twin, deadline, seed, patient=patient):
-            yield tuple(from_twin(problem.instance, twin.numbered.actions(steps)))
+    yield from GreedyRun(problem, seed).plans(deadline, patient=patient)
+
+
+class GreedyRun:
+    """The greedy plans of one problem; `plans` goes on where it was stopped before.
+
+    None at all only where pick, place and topple alone reach the goal by no plan, or where there was no time for one.
+    """
+
+    def __init__(self, problem: Problem, seed: int = 0) -> None:
+        self._problem = problem
+        self._twin = problem.twin
+        self._steps = _run_of(self._twin, seed)
+
+    def plans(
+        self, deadline: float, *, patient: bool = False, first_until: float = -math.inf
+    ) -> Iterator[tuple[Action, ...]]:
+        """Yield better plans.
+
+        Args:
+            deadline: when to stop [s, `perf_counter`].
+            patient: whether to go on with disturbed passes until then.
+            first_until: when to give up the first plan, and `GRACE` later; not before `deadline`.
+        """
+        if self._steps is not None:
+            for steps in self._steps.improving(deadline, patient, first_until):
+                yield tuple(from_twin(self._problem.instance, self._twin.numbered.actions(steps)))
+
+    def seconds_left(self) -> float:
+        """Return about how long the passes take that are not for the patient."""
+        return self._steps.seconds_left() if self._steps is not None else 0.0
 
 
 def greedy_steps(problem: Problem, deadline: float, seed: int = 0, *, patient: bool = False) -> Iterator[list[Step]]:
     """Yield the steps of plans of a plain problem; arguments as in `greedy_plans`."""
+    run = _run_of(problem, seed)
+    if run is not None:
+        yield from run.improving(deadline, patient, deadline)
+
+
+def _run_of(problem: Problem, seed: int) -> _Known | _Passes | None:
+    if problem.infeasible is not None:
+        return None
     if problem.solved:
-        yield []
-        return
+        return _Known([])
     numbered = problem.numbered
     if not problem.options.topple and numbered.locations <= 2:
         steps = line_steps(numbered)
-        if steps is not None:
-            yield steps
-        return
+        return None if steps is None else _Known(steps)
     target = target_piles(numbered, falls=problem.options.topple)
-    if target is not None:
-        yield from _Passes(problem, target, deadline, seed, patient).improving()
+    return None if target is None else _Passes(problem, target, seed)
+
+
+class _Known:
+    """One plan, to be told once."""
+
+    def __init__(self, steps: list[Step]) -> None:
+        self._steps: list[Step] | None = steps
+
+    def improving(self, deadline: float, patient: bool, first_until: float) -> Iterator[list[Step]]:
+        if self._steps is not None:
+            steps, self._steps = self._steps, None
+            yield steps
+
+    def seconds_left(self) -> float:
+        return 0.0
 
 
 class _Passes:
     """Passes of `Construction`, each disturbed otherwise, from what the best one taught."""
 
-    def __init__(self, problem: Problem, target: Piles, deadline: float, seed: int, patient: bool) -> None:
+    def __init__(self, problem: Problem, target: Piles, seed: int) -> None:
         self.problem: Numbered = problem.numbered
         self.target = target
         self.topple = problem.options.topple
         self.cap = problem.options.max_topple or max(1, self.problem.blocks)
-        self.deadline = deadline
-        self.patient = patient
         self.draw = random.Random(seed)
         self.best: list[Step] = []
         self.due: Sequence[float] = self._heights()
         self.toppled: set[int] = set()
+        self._attempts = self._all_attempts()
+        self._waiting: tuple[Sequence[int], float, bool] | None = None
+        self._longest = 0.0
+        self._passes = 0
 
-    def improving(self) -> Iterator[list[Step]]:
+    def improving(self, deadline: float, patient: bool, first_until: float) -> Iterator[list[Step]]:
         """Yield the first plan and every better one, beginning no pass that would end too late."""
-        began = perf_counter()
-        self._better(())
-        yield self.best
-        longest = perf_counter() - began  # with the time that the plan's taker needs to judge and report it
-        for attempt in self._attempts():
+        if not self.best:
             began = perf_counter()
-            if began + longest > self.deadline:
+            latest = max(deadline, first_until)
+            if not self._better((), 0.0, max(latest, began) + GRACE, latest):
                 return
-            if self._better(*attempt):
+            yield self.best
+            # With the time that the plan's taker needs to judge and report it.
+            self._longest = perf_counter() - began
+        while True:
+            attempt = self._waiting or next(self._attempts)
+            self._waiting = attempt
+            first, noise, later = attempt
+            began = perf_counter()
+            if began + self._longest > deadline or (later and not patient):
+                return
+            self._waiting = None
+            self._passes += not later
+            if self._better(first, noise):
                 yield self.best
-            longest = max(longest, perf_counter() - began)
+            self._longest = max(self._longest, perf_counter() - began)
 
-    def _attempts(self) -> Iterator[tuple[Sequence[int], float]]:
-        """Yield (stacks toppled at the start, noise): leave out one topple at a time, then disturb the choices."""
+    def seconds_left(self) -> float:
+        return self._longest * max(0, PASSES + len(self.toppled) - self._passes)
+
+    def _all_attempts(self) -> Iterator[tuple[Sequence[int], float, bool]]:
+        """Yield (stacks toppled at the start, noise, whether for the patient alone).
+
+        First one topple at a time is left out, then the choices are disturbed.
+        """
         for stack in sorted(self.toppled):
             if stack in self.toppled:
-                yield sorted(self.toppled - {stack}), 0.0
+                yield sorted(self.toppled - {stack}), 0.0, False
         for number in range(PASSES):
-            yield (), NOISE * number / PASSES
-        for noise in itertools.cycle(LATER_NOISE if self.patient else ()):
-            yield (), noise
+            yield (), NOISE * number / PASSES, False
+        for noise in itertools.cycle(LATER_NOISE):
+            yield (), noise, True
 
-    def _better(self, first: Sequence[int], noise: float = 0.0) -> bool:
+    def _better(
+        self, first: Sequence[int], noise: float, give_up: float = math.inf, shorten_until: float = math.inf
+    ) -> bool:
         """Make one pass; keep its plan, times and topples if it is the best so far."""
         construction = Construction(
             self.problem,
@@ -110,7 +176,10 @@ class _Passes:
             noise=noise,
             draw=self.draw,
         )
-        steps = shorten(construction.run(first))
+        made = construction.run(first, give_up)
+        if made is None:
+            return False
+        steps = shorten(made, shorten_until)
         if self.best and cost_of(steps) >= cost_of(self.best):
             return False
         self.best = steps

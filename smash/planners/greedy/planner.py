@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from time import perf_counter
 from typing import ClassVar
 
-from smash.planners.greedy.passes import greedy_plans
+from smash.planners.greedy.passes import GreedyRun
 from smash.planners.protocol import Method, MethodPlanner, Settings, SolveLog, anything
 from smash.problem.actions.registry import FAMILY
 from smash.problem.problem import Problem
@@ -32,7 +33,13 @@ def greedy_method(settings: Settings, share: float = 1.0) -> Method:
     """Return the greedy passes as a method, for the first plans of other planners too."""
 
     def run(problem: Problem, log: SolveLog, until: float) -> None:
-        for actions in greedy_plans(problem, until, settings.seed):
+        for actions in GreedyRun(problem, settings.seed).plans(until, first_until=end_of(until, share)):
             log.offer(actions, "greedy")
 
     return Method("greedy", anything, run, share)
+
+
+def end_of(until: float, share: float) -> float:
+    """Return when all of the time is over of which a `share` ends at `until` [s, `perf_counter`]."""
+    now = perf_counter()
+    return now + (until - now) / share

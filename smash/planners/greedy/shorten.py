@@ -2,33 +2,39 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from time import perf_counter
 
 from smash.problem.views.numbered import ON_TABLE, TOPPLE, Step
 
 SPAN = 4000
 """The farthest apart two transfers of a block may be to be looked at, in steps: keeps the time near-linear."""
+GLANCE = 64
+"""Transfers looked at between two looks at the clock."""
 
 
-def shorten(steps: Sequence[Step]) -> list[Step]:
-    """Return a plan with the same end that is never longer.
+def shorten(steps: Sequence[Step], deadline: float = math.inf) -> list[Step]:
+    """Return a plan with the same end that is never longer; what is done by `deadline` [s, `perf_counter`].
 
     A block that goes A to B and later B to C can go A to C at one moment between, if A is untouched under
     it until then (what lands on it leaves again), and C from then on.
     """
     current = list(steps)
     while True:
-        shorter = _one_pass(current)
+        shorter = _one_pass(current, deadline)
         if len(shorter) == len(current):
             return current
         current = shorter
 
 
-def _one_pass(steps: list[Step]) -> list[Step]:
+def _one_pass(steps: list[Step], deadline: float) -> list[Step]:
     current: list[Step | None] = list(steps)
     last: dict[int, int] = {}
     for index, step in enumerate(steps):
         block, source, target = step
+        if index % GLANCE == 0 and perf_counter() > deadline:
+            break
         if block == TOPPLE:
             continue
         before = last.get(block)

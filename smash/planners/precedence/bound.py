@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 
+from smash.planners.precedence.emptying import emptying_bound, piles_decide
 from smash.planners.precedence.graph import PrecedenceGraph, build_graph
 from smash.planners.precedence.hitting_set import HittingSet, HittingSetSolver
 from smash.planners.precedence.schedule import Scheduler, chosen_of
@@ -74,7 +75,10 @@ def precedence_bound(
     found = solver.solve(deadline - plans.reserve, plans.offer)
     plans.offer(found.chosen, 1.0)
     relaxed = graph.base_cost + sum(graph.choices[choice].cost for choice in found.chosen)
-    return PrecedenceBound(graph.base_cost + found.bound, relaxed, plans.best, graph, found)
+    bound = graph.base_cost + found.bound
+    if (plans.best is None or len(plans.best) > bound) and piles_decide(problem):
+        bound = max(bound, emptying_bound(problem, graph, found.cycles, deadline, tell, threads))
+    return PrecedenceBound(bound, relaxed, plans.best, graph, found)
 
 
 class _Plans:

@@ -1,12 +1,13 @@
 """The greedy planner: a plan wherever one exists, at any size."""
 
 import dataclasses
+import math
 from time import perf_counter
 
 import pytest
 from hypothesis import given, settings
 
-from smash.planners.greedy import GreedyPlanner, greedy_steps
+from smash.planners.greedy import GreedyPlanner, GreedyRun, greedy_plans, greedy_steps, passes
 from smash.planners.greedy.construct import Construction
 from smash.planners.protocol import SolveOptions
 from smash.problem import PlanOptions
@@ -14,6 +15,7 @@ from smash.problem.problem import Problem
 from smash.problem.sets.generators import generate
 from smash.problem.sets.suites import read_suite
 from smash.problem.views.numbered import cost_of
+from tests.arrangements import wide
 from tests.oracle import optimal_cost
 from tests.strategies import EVERY_KIND, instances, plan_options
 
@@ -45,7 +47,7 @@ def test_one_and_two_locations_are_decided_like_exhaustive_search(instance, opti
 @pytest.mark.parametrize("suite", ["multi-9", "single-9", "open-few-buffers", "open-on", "open-positions", "open-wide"])
 def test_every_committed_instance_gets_a_plan(suite, topple):
     for instance in read_suite(suite):
-        assert GreedyPlanner().solve(instance, SolveOptions(topple), 0.2).actions is not None
+        assert GreedyPlanner().solve(instance, SolveOptions(topple), 2.0).actions is not None
 
 
 @pytest.mark.parametrize("topple", [True, False])
@@ -57,7 +59,7 @@ def test_a_thousand_blocks_get_a_plan(topple):
             buffers=instance.buffers[:buffers],
             start={q: instance.start[q] for q in (*instance.stacks, *instance.buffers[:buffers])},
         )
-        assert GreedyPlanner().solve(cut, SolveOptions(topple), 0.1).actions is not None
+        assert GreedyPlanner().solve(cut, SolveOptions(topple), 20.0).actions is not None
 
 
 @pytest.mark.parametrize("patient", [True, False])
@@ -75,3 +77,22 @@ def test_patient_passes_only_improve():
     problem = Problem(generate("multi", 20, buffers=0)[0], PlanOptions(topple=False))
     costs = [cost_of(steps) for steps in greedy_steps(problem, perf_counter() + 0.3, patient=True)]
     assert costs == sorted(set(costs), reverse=True)
+
+
+def test_without_the_time_for_a_first_plan_there_is_none(monkeypatch):
+    monkeypatch.setattr(passes, "GRACE", -math.inf)
+    run = GreedyRun(Problem(wide(30, 4, 0), PlanOptions(topple=False)))
+    assert list(run.plans(-math.inf)) == []
+    monkeypatch.setattr(passes, "GRACE", 0.0)
+    assert next(run.plans(-math.inf, first_until=math.inf)) is not None
+
+
+def test_a_run_goes_on_where_it_was_stopped():
+    problem = Problem(wide(40, 4, 1), PlanOptions(topple=False))
+    run = GreedyRun(problem)
+    found = list(run.plans(-math.inf, first_until=math.inf))
+    assert run.seconds_left() > 0
+    found += run.plans(math.inf)
+    assert found == list(greedy_plans(problem, math.inf))
+    assert run.seconds_left() == 0
+    assert list(run.plans(math.inf)) == []
