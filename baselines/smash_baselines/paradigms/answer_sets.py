@@ -63,7 +63,7 @@ def facts(horizon: Horizon) -> Iterator[str]:
     yield from (f"bare({block})." for block in sorted(task.bare))
     yield from (f"fixed({block})." for block in sorted(task.fixed))
     yield from (f"placed({block})." for block in sorted(task.placed))
-    if not task.problem.instance.goal.__class__.__name__.startswith("On"):
+    if task.located:
         yield "located."
     if horizon.below is not None:
         yield f"below({horizon.below})."

@@ -62,6 +62,8 @@ class Model:
             if task.cap:
                 self._topple(step)
             self._rest_stays(step)
+            if task.located:
+                self._home_stays(step)
         self._ends()
         cost = sum(2 * sum(picks) for picks in self.pick) + sum(sum(low) for low in self.lowest)
         self.program.minimize(cost)
@@ -150,6 +152,17 @@ class Model:
             moved = [self.pick[step][block], *([self.fall[step][block]] if self.task.cap else [])]
             for thing in range(self.task.table + 1):
                 self.program.add_bool_or(~self.on[step][block][thing], self.on[step + 1][block][thing], *moved)
+
+    def _home_stays(self, step: int) -> None:
+        """What has come home over what is home stays there."""
+        home = [self.program.new_bool_var("") for _ in range(self.task.blocks)]
+        for block, places in enumerate(self.task.wanted):
+            for thing in places or ():
+                there = [] if thing >= self.task.blocks else [~home[thing]]
+                self.program.add_bool_or(~self.on[step][block][thing], *there, home[block])
+            self.program.add_implication(home[block], ~self.pick[step][block])
+            if self.task.cap:
+                self.program.add_implication(home[block], ~self.fall[step][block])
 
     def _ends(self) -> None:
         task, program = self.task, self.program

@@ -8,24 +8,20 @@ it follow at cost 0, one after the other.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from time import perf_counter
 from typing import Any, ClassVar
 
 from smash.planners.protocol import Settings, SolveLog, left
-from smash.problem.model import OnGoal
 from smash_baselines.paradigms.growing import ParadigmPlanner
 from smash_baselines.paradigms.task import Fall, Move, Step, Task
 
 MOST_TRANSITIONS = 100_000
 """Transitions beyond which a model is not built."""
-FIRST_SHARE = 0.15
-"""Share of the time left for the search that finds plans; the one that proves has the rest."""
 
 
 class DidpPlanner(ParadigmPlanner):
-    """A dynamic program, searched first for plans, then for the optimum."""
+    """A dynamic program, searched by cyclic best-first search, which is anytime and ends with a proof."""
 
-    summary: ClassVar[str] = "domain-independent dynamic programming (didppy): complete anytime search, then CAASDy"
+    summary: ClassVar[str] = "domain-independent dynamic programming (didppy): what stands on what, no time index"
     name: ClassVar[str] = "didp"
     module: ClassVar[str] = "didppy"
 
@@ -43,13 +39,8 @@ class DidpPlanner(ParadigmPlanner):
             log.details["stopped"] = f"the model has {transitions:,} transitions; {MOST_TRANSITIONS:,} are built"
             return
         model = Model(didppy, task)
-        for name, share in (("CBFS", FIRST_SHARE), ("CAASDy", 1.0)):
-            if log.settled or left(until) <= 0:
-                return
-            ends = perf_counter() + share * left(until)
-            solver = getattr(didppy, name)(model.program, time_limit=max(0.01, left(ends)), quiet=True)
-            self._follow(solver, model, log, ends)
-            log.details["search"] = name
+        solver = didppy.CBFS(model.program, time_limit=max(0.01, left(until)), quiet=True)
+        self._follow(solver, model, log, until)
 
     def _follow(self, solver: Any, model: Model, log: SolveLog, until: float) -> None:
         """Take the plans and the bound of a search until it ends, the best plan is proven, or `until`."""
@@ -73,7 +64,6 @@ class Model:
 
     def __init__(self, dp: Any, task: Task) -> None:
         self.dp, self.task, self.program = dp, task, dp.Model()
-        self.located = not isinstance(task.problem.instance.goal, OnGoal)
         self.kind = [self._kind(index) for index in range(len(task.places))]
         self.count, self.kinds = task.blocks, max(self.kind) + 1
         self.table = self.count + self.kinds
@@ -117,7 +107,7 @@ class Model:
 
     def _kind(self, place: int) -> int:
         """Return the kind of a place's floor: buffers are alike, and stacks too where the goal names none."""
-        stacks = self.task.stacks if self.located else 1
+        stacks = self.task.stacks if self.task.located else 1
         return min(place, stacks - 1) if place < self.task.stacks else stacks
 
     def _variables(self) -> None:
@@ -171,7 +161,7 @@ class Model:
             else:
                 when = [*able, self.room[onto - self.count] > 0]
             when.append(self.on[block] != onto)
-            if self.located and self.wanted[block] == frozenset((onto,)):
+            if self.task.located and self.wanted[block] == frozenset((onto,)):
                 ready = [] if onto >= self.count else [self.home.contains(onto)]
                 home = [*effects, (self.home, self.home.add(block))]
                 self._add(f"move {block} {onto}", 2, [*when, *ready], home, forced=True)
@@ -202,7 +192,7 @@ class Model:
         """The goal, and what each block that is not where it belongs still costs."""
         named = [block for block, places in enumerate(self.wanted) if places is not None]
         idle = [self.falling == self.table] if self.task.cap else []
-        if self.located:
+        if self.task.located:
             there = {block: self.home.contains(block) for block in named}
         else:
             there = {block: self._stands(block) for block in named}

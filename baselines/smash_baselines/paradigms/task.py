@@ -43,7 +43,8 @@ class Task:
         below: per block the thing that it stands on at the start.
         wanted: per block the things that it may stand on at the end; None: any.
         bare: blocks on which nothing stands at the end.
-        fixed: blocks that some cheapest plan never moves.
+        located: whether the goal names locations: what is home over what is home then stays in some cheapest plan.
+        fixed: blocks that are home at the start.
         placed: blocks that every plan transfers at least once.
         cap: most blocks of one topple; 0 where none is allowed.
     """
@@ -54,6 +55,7 @@ class Task:
     below: tuple[int, ...]
     wanted: tuple[frozenset[int] | None, ...]
     bare: frozenset[int]
+    located: bool
     fixed: frozenset[int]
     placed: frozenset[int]
     cap: int
@@ -128,7 +130,7 @@ def task_of(problem: Problem) -> Task:
             below[number[block]], under = under, number[block]
     floors = frozenset(range(count, count + len(places)))
     wanted, bare = _wanted(problem, number, {place: count + index for index, place in enumerate(places)}, floors)
-    fixed = frozenset[int]() if isinstance(instance.goal, OnGoal) else _at_home(below, wanted, floors)
+    located = not isinstance(instance.goal, OnGoal)
     return Task(
         problem=problem,
         places=places,
@@ -136,7 +138,8 @@ def task_of(problem: Problem) -> Task:
         below=tuple(below),
         wanted=tuple(wanted),
         bare=bare,
-        fixed=fixed,
+        located=located,
+        fixed=_at_home(below, wanted, floors) if located else frozenset(),
         placed=_placed(below, wanted, bare, count + len(places)),
         cap=0 if not options.topple else min(count, options.max_topple or count),
     )

@@ -34,7 +34,7 @@ class _First:
     price: int
     rest: Problem
     bound: float = 0.0
-    origin: str = "start"
+    origin: str | None = None
 
     @property
     def least(self) -> float:
@@ -94,7 +94,7 @@ def _look(first: _First, log: SolveLog, seconds: float, plan_rest: PlanRest) -> 
         log.offer((first.place, *answer.actions), answer.incumbents[-1].origin if answer.incumbents else log_origin)
     if answer.status == "infeasible":
         first.bound, first.origin = math.inf, answer.bound_origin or "start"
-    elif answer.lower_bound is not None and answer.lower_bound > first.bound:
+    elif answer.lower_bound is not None and (first.origin is None or answer.lower_bound > first.bound):
         first.bound, first.origin = answer.lower_bound, answer.bound_origin or "start"
     log.details.setdefault("first_places", {})[first.place.target] = dict(answer.details)
 
@@ -103,6 +103,6 @@ def _prove(firsts: Sequence[_First], log: SolveLog) -> None:
     """Take the least that any first place leaves as the bound of all."""
     least = min(firsts, key=lambda first: first.least)
     if least.least == math.inf:
-        log.refute(least.origin)
-    elif least.bound > 0 or least.origin != "start":
+        log.refute(least.origin or "start")
+    elif least.origin is not None:
         log.prove(int(least.least), least.origin)
