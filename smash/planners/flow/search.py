@@ -160,7 +160,7 @@ class FlowSearch:
             build=lambda _until: self.model(horizon),
             decode=self._decode,
             horizon=horizon,
-            share=min(1.0, seconds / max(left(self.solving.until), 1e-3)),
+            most=seconds,
             start=None if anew else self._start,
             options=OPTIONS if anew else OPTIONS | LINEAR,
         )
