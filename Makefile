@@ -102,11 +102,11 @@ best-known: needs-pddl ## best known costs and bounds of the open instances, and
 	$(BIN)/python -m smash best-known update runs/open
 	$(BIN)/python -m smash best-known table --into docs/open-instances.md
 
-compare: needs-analysis-pddl ## all planners, gadget and PDDL, on a stated subset of the committed sets (at most 30 minutes on 2 cores)
+compare: needs-analysis-clingo-cp-sat-didp-pddl ## all planners, of every paradigm, on a stated subset of the committed sets (at most 30 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/compare.toml --out runs/compare
 	$(BIN)/python -m smash_analysis.comparison runs/compare
 
-compare-full: needs-analysis-pddl ## all planners on all of the committed sets (a day or more; says how many hours first)
+compare-full: needs-analysis-clingo-cp-sat-didp-pddl ## all planners on all of the committed sets (a day or more; says how many hours first)
 	$(BIN)/python -m smash sweep experiments/compare-full.toml --out runs/compare-full --dry-run
 	$(BIN)/python -m smash sweep experiments/compare-full.toml --out runs/compare-full
 	$(BIN)/python -m smash_analysis.comparison runs/compare-full

@@ -75,6 +75,8 @@ def test_keys_are_the_same_each_time_and_differ_between_runs(tmp_path):
         ('"greedy"', '"gredy"', "known: "),
         ('"greedy"', '"greedy"\nwarm_start = "x"', "known: "),
         ('"greedy"', '"greedy"\nhorizn = 3', "horizn"),
+        ('"greedy"', '"greedy"\nsolver = "cplex"', "'cplex' is not allowed; highs, cpsat, scip, gurobi"),
+        ('"greedy"', '"greedy"\nlabel = "g"\n[[planners]]\nname = "greedy"\nsolver = "cpsat"\nlabel = "g"', "label"),
         ('"greedy"', '"greedy"\nthreads = 0', "threads"),
         ('"greedy"', '"greedy"\nthreads = 100000', "threads"),
         ("[0.5, 0.1, 2]", "[0.5, -1]", "-1.0 is not allowed"),
@@ -105,3 +107,11 @@ def test_buffers_that_hold_blocks_stay_and_new_names_are_fresh():
     assert with_buffers(instance, 2).buffers == ("u1", "u2")
     assert with_buffers(instance, 14).buffers[-2:] == ("u13", "u14")
     assert with_buffers(instance, 12) == instance
+
+
+def test_the_solver_is_part_of_a_run_its_key_and_its_label(tmp_path):
+    runs = runs_of(tmp_path, GOOD.replace('"greedy"', '"smash-flow"\nsolver = "cpsat"', 1))
+    chosen = {run.label: run.job.settings.solver for run in runs}
+    assert chosen["smash-flow (cpsat)"] == "cpsat"
+    others = runs_of(tmp_path, GOOD.replace('"greedy"', '"smash-flow"\nlabel = "smash-flow (cpsat)"', 1))
+    assert {run.key for run in runs if run.label == "smash-flow (cpsat)"}.isdisjoint(run.key for run in others)

@@ -128,3 +128,11 @@ def test_what_was_made_here_and_what_was_read_are_equal(tmp_path):
     assert one.document == made.document
     assert isinstance(one, RunRecord)
     assert EPISODES.record is EpisodeRecord
+
+
+def test_runs_of_several_solvers_under_one_label_are_refused(tmp_path):
+    runs = [record(0, [(1.0, 5)], solver="cpsat"), record(1, [(1.0, 5)])]
+    with pytest.raises(MalformedFile, match="labelled 'p' are of the solvers cpsat and highs"):
+        finished_runs(write(tmp_path, runs))
+    apart = [record(0, [(1.0, 5)], solver="cpsat", label="q"), record(1, [(1.0, 5)])]
+    assert [run.solver for run in finished_runs(write(tmp_path, apart))] == ["cpsat", "highs"]

@@ -44,8 +44,9 @@ nowhere: after some steps it is a jump, and each horizon is begun anew. Other so
 they find none in a tight horizon."""
 STEPS_BEFORE_JUMP = 2
 """Steps beyond the first horizon with a plan that are taken one by one; then one is left out."""
-CLIMB_SHARE, JUMP_SHARE = 0.25, 0.5
-"""Share of the time left that a solver which climbs has for a horizon beyond the first with a plan, or begun anew."""
+CLIMB_SECONDS, ANEW_SECONDS = 5.0, 10.0
+"""For a horizon beyond the first with a plan, or begun anew, of a solver that climbs: whatever the budget is, so
+that what it finds within it is what it finds with less."""
 
 
 class TooLarge(SmashError):
@@ -108,7 +109,8 @@ class FlowSearch:
         horizon = self.horizon or (self.shortest_horizon() if self._climbs else self.first_horizon())
         while not self.solving.done():
             patient = not self._climbs or self.log.cost is None
-            result = self._solve(horizon, 1.0 if patient else JUMP_SHARE if self._begins_anew(horizon) else CLIMB_SHARE)
+            seconds = math.inf if patient else ANEW_SECONDS if self._begins_anew(horizon) else CLIMB_SECONDS
+            result = self._solve(horizon, seconds)
             if result is None or self.horizon is not None:
                 return
             if result.status not in ("optimal", "infeasible") and not (self._climbs and self.log.cost is not None):
@@ -151,14 +153,14 @@ class FlowSearch:
             raise TooLarge(f"the flow model has {arcs:,} arcs at horizon {horizon}; at most {most:,.0f} are built here")
         return build(self.scope, self.reaches, horizon)
 
-    def _solve(self, horizon: int, share: float) -> MilpResult | None:
+    def _solve(self, horizon: int, seconds: float) -> MilpResult | None:
         anew = self._begins_anew(horizon)
         stage = Stage(
             name="flow",
             build=lambda _until: self.model(horizon),
             decode=self._decode,
             horizon=horizon,
-            share=share,
+            most=seconds,
             start=None if anew else self._start,
             options=OPTIONS if anew else OPTIONS | LINEAR,
         )

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import ceil, isfinite
+from math import ceil, inf, isfinite
 from time import perf_counter
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -46,6 +46,7 @@ class Stage(Generic[Model]):
             None: its solutions are no plans.
         horizon: number of layers or steps; None: it has no time.
         share: share of the time left that the solver may take, and building at the most.
+        most: most seconds for the solver.
         estimate: a generous estimate of how long it takes to build and to load [s]: with less left it is not begun.
         start: the solution that the solver starts from, None where there is none.
         options: further options, by solver.
@@ -56,6 +57,7 @@ class Stage(Generic[Model]):
     decode: Callable[[Model, Floats], Sequence[Action] | None] | None
     horizon: int | None = None
     share: float = 1.0
+    most: float = inf
     estimate: float = 0.0
     start: Callable[[Model], Floats | None] | None = None
     options: Mapping[str, dict[str, Any]] = field(default_factory=dict)
@@ -105,7 +107,7 @@ class Solving:
         try:
             result = solver_of(self.settings)(
                 model.milp,
-                time_limit=stage.share * left(self.until),
+                time_limit=min(stage.most, stage.share * left(self.until)),
                 threads=self.settings.threads,
                 seed=self.settings.seed,
                 start=start,

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from smash.gadget.encode import encode
 from smash.planners.flow.search import FlowSearch, TooLarge, check_gadget_size
 from smash.planners.flow.warm import motion_of
 from smash.planners.protocol import Settings, SolveLog
@@ -35,6 +36,34 @@ def test_a_short_horizon_gives_the_plan_and_a_longer_one_the_proof(topple, cost)
     assert stages[0]["horizon"] == first < stages[-1]["horizon"]
     assert stages[-1]["started_from_a_plan"] == topple  # without, the first horizon holds no plan
     assert stages[-1]["horizon"] >= found.bound.steps(cost - 1)
+
+
+@pytest.mark.parametrize(("topple", "cost"), [(True, 5), (False, 8)])
+def test_on_cpsat_the_shortest_horizon_comes_first_and_the_proof_is_as_good(topple, cost):
+    pytest.importorskip("ortools")
+    found = search(turned(PlanOptions(topple)), solver="cpsat")
+    found.run()
+    horizons = [stage["horizon"] for stage in found.log.details["stages"]]
+    assert horizons[0] == found.shortest_horizon() < found.first_horizon()
+    assert horizons == sorted(set(horizons))
+    assert (found.log.cost, found.log.bound, found.log.bound_origin) == (cost, cost, "milp")
+
+
+def test_every_plan_fits_buffers_that_are_used_in_order_and_another_order_does_not():
+    parts = {"stacks": ["s", "t"], "buffers": ["u", "v"], "start": {"s": "ab", "t": "cd"}, "blocks": "abcd"}
+    problem = Problem(make_instance(name="x", **parts, goal=StacksGoal({"s": "ba", "t": "cd"})))
+    found = search(problem)
+    assert found.scope.alike == ()  # two blocks move: each buffer belongs to one of them
+    problem = Problem(make_instance(name="x", **parts, goal=StacksGoal({"s": "ba", "t": "dc"})), PlanOptions(False))
+    found = search(problem)
+    assert found.scope.alike == ("u", "v")
+    moves = [("b", "s", "v"), ("a", "s", "u"), ("b", "v", "s"), ("a", "u", "s"), ("d", "t", "v"), ("c", "t", "u")]
+    moves += [("d", "v", "t"), ("c", "u", "t")]
+    plan = [act for block, source, target in moves for act in (Pick(block, source), Place(block, target))]
+    renamed = motion_of(problem, found.scope, plan)
+    model = found.model(renamed.steps)
+    assert model.vector(renamed) is not None
+    assert model.vector(encode(found.scope.instance, plan, found.scope.gadget)) is None
 
 
 def test_a_given_horizon_is_the_only_one():

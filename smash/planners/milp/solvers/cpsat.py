@@ -18,6 +18,8 @@ from smash.problem.errors import Unsupported
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+LONGEST = 1e9
+"""Most seconds of a solve."""
 ASKED_EVERY = 0.02
 """Seconds between two questions whether to stop."""
 WIDEST = 1 << 40
@@ -55,7 +57,7 @@ def solve(
     solver.parameters.random_seed = seed
     for name, value in (options or {}).items():
         setattr(solver.parameters, name, value)
-    solver.parameters.max_time_in_seconds = max(0.0, time_limit - (perf_counter() - began))
+    solver.parameters.max_time_in_seconds = min(LONGEST, max(0.0, time_limit - (perf_counter() - began)))
     callback = None if on_solution is None else _callback(cp_model, began, on_solution)
     with _stopped(solver, should_stop):
         ended = solver.solve(program, callback)
