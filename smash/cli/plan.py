@@ -140,7 +140,7 @@ def _end(report: Report, instance: Path, planner: str, budget: float) -> None:
     elif report.plan.lower_bound is not None:
         found = f" without a plan; none is cheaper than {report.plan.lower_bound}"
     words = {
-        "infeasible": "proven infeasible",
+        "infeasible": f"infeasible, {report.reason}" if report.reason else "proven infeasible",
         "budget-spent": _without_plan(report, budget),
         "interrupted": f"interrupted{found}",
     }.get(report.outcome, f"{report.outcome}: {report.reason}")

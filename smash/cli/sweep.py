@@ -19,6 +19,7 @@ from smash.experiments.sweeps.experiment import Experiment, Run, experiment_runs
 from smash.experiments.sweeps.keep import keep
 from smash.experiments.sweeps.sweep import execute, local_task, sweep
 from smash.problem.files.documents import write_text
+from smash.problem.words import one_line
 from smash.records.files import RUNS
 from smash.records.runs import RunRecord
 from smash.records.writing import Writer
@@ -98,8 +99,8 @@ def run_all(runs: list[Run], out: Path, jobs: int, dask: str | None, keep: Calla
 
 
 def _say_state(records: Writer[RunRecord], runs: list[Run], kept: int) -> None:
-    if records.set_aside:
-        click.echo(f"the last line of {records.path} was damaged: set aside, its run is done again", err=True)
+    for line in records.set_aside:
+        click.echo(one_line(f"{line}: damaged: set aside, its run is done again"), err=True)
     if kept:
         now, meant = commit().hash, {run.key for run in runs}
         old = sum(record.key in meant and record.commit.hash != now for record in records.earlier)

@@ -21,18 +21,14 @@ import msgspec
 from smash.experiments.isolation.job import DEFAULT_MEMORY, Job
 from smash.planners.protocol import MOST_THREADS, Settings, SolveOptions
 from smash.planners.registry import get_planner, why_unknown
-from smash.problem.actions.registry import FAMILY
 from smash.problem.buffers import with_buffers
 from smash.problem.errors import MalformedFile, Unsupported
 from smash.problem.files.documents import convert, parse_toml, read_bytes
-from smash.problem.files.instances import instance_document
-from smash.problem.model import Instance, PlanOptions
+from smash.problem.model import Instance
 from smash.problem.problem import Problem
 from smash.problem.sets.suites import read_suite, suite_names
-from smash.records.runs import RunKind
-
-FURTHER = tuple(name for name in FAMILY if name != "topple")
-"""Aggregating actions that a variant can leave out by `-no-NAME`."""
+from smash.records.runs import RunKind, instance_hash
+from smash.records.variants import FURTHER, variant_options
 
 INSTANCES = "instances"
 SETS = "sets.json"
@@ -93,20 +89,29 @@ class Run:
     job: Job
 
 
-def read_experiment(path: str | os.PathLike[str]) -> Experiment:
+def read_experiment(path: str | os.PathLike[str], *, to_run: bool = True) -> Experiment:
     """Read an experiment file; suites that are directories are found beside it.
+
+    Args:
+        path: of the file.
+        to_run: whether its planners must be there; what was run elsewhere can be looked at without them.
 
     Raises:
         MalformedFile: with one line that says where and what is allowed.
     """
     where = os.fspath(path)
     experiment = cast(Experiment, convert(parse_toml(read_bytes(path), where), Experiment, where))
-    check_experiment(experiment, where)
+    check_experiment(experiment, where, to_run=to_run)
     return experiment
 
 
-def check_experiment(experiment: Experiment, where: str = "experiment") -> None:
+def check_experiment(experiment: Experiment, where: str = "experiment", *, to_run: bool = True) -> None:
     """Refuse settings that cannot be run.
+
+    Args:
+        experiment: the settings.
+        where: what is named where they are refused.
+        to_run: whether its planners must be there.
 
     Raises:
         MalformedFile: with one line that says where and what is allowed.
@@ -127,7 +132,7 @@ def check_experiment(experiment: Experiment, where: str = "experiment") -> None:
     for index, entry in enumerate(experiment.planners):
         part = f"planners[{index}]"
         for name in filter(None, (entry.name, entry.warm_start)):
-            unknown = why_unknown(name)
+            unknown = why_unknown(name) if to_run else None
             expect(unknown is None, part, unknown or "")
         few = 1 <= entry.threads <= MOST_THREADS
         expect(few, f"{part}.threads", f"{entry.threads} is not allowed; 1 to {MOST_THREADS}")
@@ -160,30 +165,22 @@ def _expect_list(expect: Expect, part: str, values: list[T] | None, fits: Callab
         expect(values.count(value) == 1, part, f"{value!r} stands twice")
 
 
-def variant_options(variant: str) -> PlanOptions | None:
-    """Return what a variant's name allows a plan to do, or None where it is no variant."""
-    parts = re.fullmatch(
-        rf"(topple|no-topple|max-topple-([1-9][0-9]{{0,5}}))((?:-no-(?:{'|'.join(FURTHER)}))*)", variant
-    )
-    if parts is None:
-        return None
-    without = tuple(parts[3].split("-no-")[1:])
-    return PlanOptions(parts[1] != "no-topple", int(parts[2]) if parts[2] else None, without=without)
-
-
-def experiment_runs(experiment: Experiment, base: Path = Path()) -> list[Run]:
+def experiment_runs(
+    experiment: Experiment, base: Path = Path(), dependent: Callable[[str], bool] | None = None
+) -> list[Run]:
     """Return every run of a checked experiment, instance by instance, so that a part of them is a fair sample.
 
     Args:
         experiment: the experiment.
         base: where suites that are directories are looked for.
+        dependent: whether a planner is run at each budget by itself; None asks the planner.
 
     Raises:
         MalformedFile: where a suite or an instance is refused, a run stands twice.
     """
     runs: dict[str, tuple[int, Run]] = {}
     for entry in experiment.planners:
-        planned = list(_entry_runs(experiment, entry, base))
+        planned = list(_entry_runs(experiment, entry, base, dependent or budget_dependent))
         sample = experiment.cutoff_sample if entry.cutoff_sample is None else entry.cutoff_sample
         anytime = sorted((run.key, index, run) for index, run in planned if run.kind == "anytime")
         planned += [(index, cut) for _, index, run in anytime[:sample] for cut in _cutoffs(run)]
@@ -195,10 +192,12 @@ def experiment_runs(experiment: Experiment, base: Path = Path()) -> list[Run]:
     return [run for _, run in sorted(runs.values(), key=lambda pair: pair[0])]
 
 
-def _entry_runs(experiment: Experiment, entry: PlannerEntry, base: Path) -> Iterator[tuple[int, Run]]:
+def _entry_runs(
+    experiment: Experiment, entry: PlannerEntry, base: Path, dependent: Callable[[str], bool]
+) -> Iterator[tuple[int, Run]]:
     """Yield (index of the instance in its suite, run) over the grid of one planner."""
     budgets = sorted(entry.budgets or experiment.budgets)
-    kind: RunKind = "budget" if budget_dependent(entry.name) else "anytime"
+    kind: RunKind = "budget" if dependent(entry.name) else "anytime"
     few = entry.instances or experiment.instances
     counts: list[int | None] = list(entry.buffers or experiment.buffers or []) or [None]
     for suite in entry.suites or experiment.suites:
@@ -238,11 +237,6 @@ def _key(label: str, suite: str, kind: RunKind, job: Job) -> str:
     asked = asdict(SolveOptions.of(job.options, job.settings))  # in one, as in the keys of earlier records
     meant = [label, suite, kind, job.planner, asked, job.budget, job.memory]
     return hashlib.sha256(json.dumps([*meant, instance_hash(job.instance)]).encode()).hexdigest()[:20]
-
-
-def instance_hash(instance: Instance) -> str:
-    """Return a hash of the whole instance, its name included."""
-    return hashlib.sha256(json.dumps(instance_document(instance)).encode()).hexdigest()[:16]
 
 
 def not_installed(experiment: Experiment) -> dict[str, str]:
