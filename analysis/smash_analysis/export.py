@@ -47,8 +47,15 @@ def tidy_runs(records: list[RunRecord]) -> pd.DataFrame:
     not_plain = (*FLATTENED, *AS_JSON, *IN_OWN_TABLES, "load_average")
     table = runs_table(records).drop(columns=list(not_plain), errors="ignore")
     table = pd.concat([table, flat.set_index(table.index)], axis="columns")
-    table["started"] = pd.to_datetime(table["started"], utc=True)
-    return table.astype(TYPES)
+    table["started"] = pd.to_datetime(table["started"], utc=True, format="ISO8601", errors="coerce")
+    further = {name: "string" for name in table.columns if name not in TYPES and _mixed(table[name])}
+    return table.astype(TYPES | further)
+
+
+def _mixed(column: pd.Series[Any]) -> bool:
+    """Whether a column, of a field that this version does not know, holds texts beside other values."""
+    kinds = {type(value) for value in column if value is not None}
+    return column.dtype == object and len(kinds) > 1
 
 
 def _flat(record: RunRecord) -> dict[str, Any]:

@@ -34,6 +34,8 @@ def command(instance: Path, plan: Path, certificate: Path) -> None:
     if not verdict.accepted:
         fail(f"{plan}: {verdict}", 3)
     bound = proven_bound(problem, filed.options, read_certificate(certificate))
+    if filed.cost is not None and bound > filed.cost:
+        fail(f"{certificate}: its bound {bound} is above the cost {filed.cost} of this legal plan", 3)
     if filed.cost == bound:
         click.echo(f"verified: legal, and no plan has fewer than its {bound} actions")
     elif filed.status != "optimal" and (filed.lower_bound is None or filed.lower_bound <= bound):
