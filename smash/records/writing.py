@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable, Iterable
 from pathlib import Path
 from types import TracebackType
 from typing import Generic, Self
@@ -23,16 +23,24 @@ class Writer(Generic[R]):
         path: The file.
         earlier: The records that were there when it was opened, each key once.
         finished: Keys of all records there.
+        redone: How many records were moved to the `.redone` file, to be done again.
         set_aside: In words, each line that was damaged, or cut off by a kill; they lie in the `.damaged` file now.
+
+    Args:
+        directory: the results directory.
+        kind: which file.
+        again: the records that are to be done again, for which this is true; None: none of them.
 
     Raises:
         InUse: where another process has the directory.
         MalformedFile: where the file cannot be read or written.
     """
 
-    def __init__(self, directory: Path, kind: RecordFile[R]) -> None:
+    def __init__(self, directory: Path, kind: RecordFile[R], again: Callable[[R], bool] | None = None) -> None:
         self.path = kind.path(directory)
         self._lock = hold(directory)
+        self._again: Callable[[R], bool] = again or (lambda _: False)
+        self.redone = 0
         try:
             self.earlier: list[R]
             self.set_aside: list[str]
@@ -53,16 +61,16 @@ class Writer(Generic[R]):
         texts = self.path.read_bytes().removesuffix(b"\n").split(b"\n")
         if not reading.ended:
             moved.setdefault(len(texts), f"line {len(texts)}: cut off at its end")
-        if not moved:
+        again = {line.number for line in reading.lines if line.number not in moved and self._again(line.record)}
+        if not moved and not again:
             return reading.records, []
-        with open(kind.aside(directory), "ab") as aside:
-            aside.writelines(text + b"\n" for number, text in enumerate(texts, start=1) if number in moved)
-            aside.flush()
-            os.fsync(aside.fileno())
-        with replacing(self.path) as whole, open(whole, "wb") as file:
-            file.writelines(text + b"\n" for number, text in enumerate(texts, start=1) if number not in moved)
-            file.flush()
-            os.fsync(file.fileno())
+        self.redone = len(again)
+        for target, numbers in ((kind.aside(directory), set(moved)), (kind.redone(directory), again)):
+            if numbers:
+                _add(target, [text for number, text in enumerate(texts, start=1) if number in numbers])
+        stay = [text for number, text in enumerate(texts, start=1) if number not in again.union(moved)]
+        with replacing(self.path) as whole:
+            _add(whole, stay)
         return read(directory, kind).records, [f"{self.path}: {moved[number]}" for number in sorted(moved)]
 
     def __enter__(self) -> Self:
@@ -89,3 +97,11 @@ class Writer(Generic[R]):
         except OSError as error:
             raise MalformedFile(str(self.path), f"cannot be written: {error.strerror}") from None
         self.finished.add(record.key)
+
+
+def _add(file: Path, lines: Iterable[bytes]) -> None:
+    """Add lines to a file and have them on disk."""
+    with open(file, "ab") as kept:
+        kept.writelines(line + b"\n" for line in lines)
+        kept.flush()
+        os.fsync(kept.fileno())

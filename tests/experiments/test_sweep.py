@@ -166,6 +166,17 @@ def test_damage_elsewhere_is_set_aside_with_its_line_and_its_run_done_again(expe
     assert len(records(out)) == 2
 
 
+def test_runs_that_ended_so_are_done_again_where_it_is_asked_for(experiment, tmp_path):
+    file, out = experiment(["bare", "raises"]), tmp_path / "out"
+    sweep(file, out)
+    before = records(out)
+    ended = sweep(file, out, "--redo", "crashed")
+    count = sum(record["outcome"] == "crashed" for record in before)
+    assert f"{count} recorded runs are done again" in ended.stderr
+    assert len((out / "runs.redone").read_text().splitlines()) == count > 0
+    assert sorted(record["key"] for record in records(out)) == sorted(record["key"] for record in before)
+
+
 def test_two_sweeps_on_one_directory_are_refused(experiment, tmp_path):
     with Writer(tmp_path / "out", RUNS):
         with pytest.raises(InUse):

@@ -247,7 +247,7 @@ def not_installed(experiment: Experiment) -> dict[str, str]:
             get_planner(name)
         except Unsupported as error:
             lacking[name] = str(error)
-        except Exception:  # a planner that is broken, not missing: its runs say so
+        except (Exception, SystemExit):  # a planner that is broken, not missing: its runs say so
             continue
     return lacking
 
@@ -256,7 +256,7 @@ def budget_dependent(planner: str) -> bool:
     """Whether a planner must be run at each budget by itself; one that cannot be loaded says so in its runs."""
     try:
         loaded = get_planner(planner)
-    except Exception:
+    except (Exception, SystemExit):
         return False
     return bool(getattr(loaded, "budget_dependent", not getattr(loaded, "anytime", False)))
 
