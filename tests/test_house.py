@@ -33,7 +33,10 @@ ORDERS = {
         *("protocol", "registry", "compiling", "milp", "greedy", "precedence", "astar", "warm"),
         *("layered", "flow", "former", "portfolio"),
     ),
-    "smash.records": ("outcomes", "locking", "record", "runs", "episodes", "trials", "files", "reading", "writing"),
+    "smash.records": (
+        *("outcomes", "locking", "variants", "claims", "record", "runs", "episodes", "trials", "files", "reading"),
+        *("writing", "believing"),
+    ),
     "smash.experiments": (
         *("environment", "isolation", "sweeps", "episodes", "best_known", "studies"),
         *("reproduction", "planning", "executing", "comparison"),

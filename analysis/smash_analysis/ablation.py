@@ -7,15 +7,15 @@ from pathlib import Path
 
 import pandas as pd
 
-from smash.records.reading import finished_runs
 from smash_analysis import command
 from smash_analysis.charts.heatmaps import planner_figure
 from smash_analysis.statistics.conditions import conditions
 from smash_analysis.statistics.findings import findings
+from smash_analysis.tables.believed import runs_of
 from smash_analysis.tables.cells import matched_cells, variant_cells
 from smash_analysis.tables.readings import cutoff_check, readings
 from smash_analysis.tables.runs import runs_table
-from smash_analysis.tables.writing import ablation_table, markdown
+from smash_analysis.tables.writing import ablation_table, markdown, write_csv
 
 
 def make(results: Path, out: Path) -> list[Path]:
@@ -24,7 +24,7 @@ def make(results: Path, out: Path) -> list[Path]:
     Raises:
         MalformedFile: where there are none, or they are damaged.
     """
-    records = finished_runs(results)
+    records = runs_of(results)
     out.mkdir(parents=True, exist_ok=True)
     read = readings(records)
     cells, matched, check = variant_cells(read), matched_cells(read), cutoff_check(records)
@@ -32,7 +32,7 @@ def make(results: Path, out: Path) -> list[Path]:
     table = ablation_table(runs[runs["kind"] != "cutoff"])
     files = [out / name for name in ("cells.csv", "matched.csv", "cutoffs.csv", "table.csv", "table.md", "findings.md")]
     for file, frame in zip(files, (cells, matched, check, table), strict=False):
-        frame.to_csv(file, index=False)
+        write_csv(frame, file)
     files[4].write_text(markdown(table), encoding="utf-8")
     files[5].write_text(findings(cells, matched, check) + conditions(records), encoding="utf-8")
     return files + _pictures(cells, matched, out)

@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import NoReturn
 
 from smash.problem.errors import SmashError
+from smash.problem.words import one_line
 
 
 def fail(error: SmashError) -> NoReturn:
     """End with one line on stderr and the exit code of the error."""
-    print(f"smash: {error}", file=sys.stderr)
+    print(f"smash: {one_line(str(error))}", file=sys.stderr)
     sys.exit(error.exit_code)
 
 

@@ -6,19 +6,20 @@ twice: over all that the planner solved, and over the problems that every planne
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from pathlib import Path
 
 import pandas as pd
 
-from smash.records.reading import finished_runs
+from smash.problem.words import visible
+from smash.records.believing import Believed
 from smash.records.runs import RunRecord
 from smash_analysis import command
 from smash_analysis.charts.curves import anytime_chart, coverage_chart
 from smash_analysis.metrics import PREFIX, metric_names
 from smash_analysis.statistics.conditions import conditions
+from smash_analysis.tables.believed import believed_of
 from smash_analysis.tables.runs import runs_table
-from smash_analysis.tables.writing import markdown, mean_std, median_iqr, share
+from smash_analysis.tables.writing import markdown, mean_std, median_iqr, share, write_csv
 
 PROBLEM = ["instance_hash", "variant"]
 GROUP = ["suite", "blocks", "buffers", "variant"]
@@ -34,50 +35,20 @@ def comparable(records: list[RunRecord]) -> list[RunRecord]:
     return [record for record in kept if record.budget == largest[record.label, record.suite]]
 
 
-def optima(records: list[RunRecord]) -> tuple[dict[tuple[str, str], int], list[str]]:
-    """Return the proven optimal cost of each problem (instance hash, variant), and every contradiction in words.
-
-    A contradiction: two planners prove different optima, or one has a legal plan below a proven optimum or bound.
-    """
-    proven: dict[tuple[str, str], int] = {}
-    witness: dict[tuple[str, str], str] = {}
-    wrong = []
-    accepted = [record for record in records if record.outcome != "refused"]
-    for record in accepted:
-        problem = (record.instance_hash, record.variant)
-        if record.status == "optimal" and record.cost is not None:
-            known = proven.setdefault(problem, record.cost)
-            first = witness.setdefault(problem, record.label)
-            if known != record.cost:
-                wrong.append(f"{_name(record)}: {first} proves {known}, {record.label} proves {record.cost}")
-                proven[problem] = min(known, record.cost)
-    solved = {(r.instance_hash, r.variant): r.label for r in accepted if r.cost is not None}
-    bounds: dict[tuple[str, str], tuple[int, str]] = {}
-    for record in accepted:
-        problem = (record.instance_hash, record.variant)
-        if record.lower_bound is not None:
-            bounds[problem] = max(bounds.get(problem, (0, "")), (record.lower_bound, record.label))
-    for record in accepted:
-        bound, who = bounds.get((record.instance_hash, record.variant), (0, ""))
-        if record.cost is not None and record.cost < bound:
-            wrong.append(f"{_name(record)}: {who} proves at least {bound}, {record.label} has {record.cost}")
-        if record.status == "infeasible" and (record.instance_hash, record.variant) in solved:
-            other = solved[record.instance_hash, record.variant]
-            wrong.append(f"{_name(record)}: {record.label} proves it infeasible, {other} has a plan")
-    return proven, sorted(set(wrong))
-
-
-def _name(record: RunRecord) -> str:
-    return f"{record.instance} B={record.buffers} {record.variant}"
+def optima(records: list[RunRecord]) -> dict[tuple[str, str], int]:
+    """Return the proven optimal cost of each problem (instance hash, variant), of believed runs."""
+    proven = [record for record in records if record.outcome != "refused" and record.status == "optimal"]
+    return {(record.instance_hash, record.variant): record.cost for record in proven if record.cost is not None}
 
 
 def compared(records: list[RunRecord]) -> pd.DataFrame:
-    """Return one row a run with `gap` (cost over the proven optimum, a share; NaN where none is proven) and `common`.
+    """Return one row a believed run with `gap` and `common`.
 
-    `common` holds where every planner that solved anything of this suite and variant solved this problem.
+    `gap` is the cost over the proven optimum, a share, and NaN where none is proven. `common` holds where every planner
+    that solved anything of this suite and variant solved this problem.
     """
     runs = runs_table(records)
-    proven, _ = optima(records)
+    proven = optima(records)
     best = [proven.get(problem) for problem in zip(runs["instance_hash"], runs["variant"], strict=True)]
     runs["optimum"] = pd.Series(best, index=runs.index, dtype=float)
     gap = runs["cost"] / runs["optimum"].where(runs["optimum"] > 0) - 1
@@ -129,37 +100,34 @@ def failure_table(runs: pd.DataFrame) -> pd.DataFrame:
     return counts.rename("runs").reset_index().rename(columns={"label": "planner"})
 
 
-def make(results: Path, out: Path, keys: Collection[str] | None = None) -> list[Path]:
+def make(results: Path, out: Path) -> list[Path]:
     """Make the comparison's tables and curves from the records in `results`; return the files.
 
-    Args:
-        results: the directory of the records.
-        out: where the files go.
-        keys: the runs that are meant (None: all); a directory may hold records of other comparisons too.
-
     Raises:
-        MalformedFile: where there are none, or they are damaged.
+        MalformedFile: where there are none, or they cannot be read.
     """
-    records = comparable(finished_runs(results, keys))
+    return write(believed_of(results), out)
+
+
+def write(found: Believed, out: Path) -> list[Path]:
+    """Write the tables and curves of believed runs, what contradicts first; return the files."""
+    records = comparable(found.records)
     out.mkdir(parents=True, exist_ok=True)
     runs = compared(records)
-    _, wrong = optima(records)
     table, outcomes, failures = comparison_table(runs), outcome_table(runs), failure_table(runs)
     parts = {"comparison": table, "outcomes": outcomes, "failures": failures}
     files = []
     for name, part in parts.items():
         files.append(out / f"{name}.csv")
-        part.to_csv(files[-1], index=False)
-    page = ["# Comparison", "", markdown(table), "## How the runs ended", "", markdown(outcomes)]
+        write_csv(part, files[-1])
+    left_out = [f"- {visible(line)}" for line in found.lines()]
+    page = ["# Comparison", ""]
+    page += ["## Contradictions, and what is left out", "", *left_out, ""] if left_out else []
+    page += [markdown(table), "## How the runs ended", "", markdown(outcomes)]
     page += ["## Failures and their reasons", "", markdown(failures) if len(failures) else "None.\n"]
-    page += [
-        "## Contradictions between planners",
-        "",
-        "\n".join(f"- {line}" for line in wrong) or "None.",
-        conditions(records),
-    ]
+    page += [] if left_out else ["## Contradictions between planners", "", "None."]
     files.append(out / "comparison.md")
-    files[-1].write_text("\n".join(page), encoding="utf-8")
+    files[-1].write_text("\n".join([*page, conditions(records)]), encoding="utf-8")
     for name, draw in (("anytime", anytime_chart), ("coverage", coverage_chart)):
         figure = draw(records).figure()
         for ending in ("png", "pdf"):

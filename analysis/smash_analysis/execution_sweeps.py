@@ -17,10 +17,10 @@ from matplotlib.figure import Figure
 
 from smash.problem.errors import SmashError
 from smash.records.files import TRIALS
-from smash.records.reading import finished
 from smash_analysis.command import fail
 from smash_analysis.execution_tables import WITHOUT, paired_table, read_episodes
 from smash_analysis.statistics.intervals import success_rate, wilson
+from smash_analysis.tables.believed import records_of
 from smash_analysis.tables.writing import RATES, SPREADS, markdown, rate_cell
 
 DEFAULT = "default"
@@ -88,7 +88,7 @@ def read_trials(directories: Sequence[Path]) -> pd.DataFrame:
     """
     rows = []
     for directory in directories:
-        for trial in finished(directory, TRIALS):
+        for trial in records_of(directory, TRIALS):
             rows.append(
                 {
                     **{

@@ -9,12 +9,12 @@ import pandas as pd
 
 from smash.records.episodes import EpisodeRecord
 from smash.records.files import EPISODES
-from smash.records.reading import finished
 from smash_analysis import command
 from smash_analysis.statistics.intervals import paired, success_rate
+from smash_analysis.tables.believed import records_of
 from smash_analysis.tables.episodes import episodes_table
 from smash_analysis.tables.paper_tables import METRICS, PAPER, SIZES, Metric
-from smash_analysis.tables.writing import RATES, SPREADS, latex, markdown, mean_std, rate_cell, with_spread
+from smash_analysis.tables.writing import RATES, SPREADS, latex, markdown, mean_std, rate_cell, with_spread, write_csv
 
 LEGEND = (
     f"Cells: mean ± std (median) over instances; the paper: mean ± std. {RATES} "
@@ -39,7 +39,7 @@ def read_episodes(results: Path) -> pd.DataFrame:
     Raises:
         MalformedFile: where there are none, or they are damaged.
     """
-    return told_episodes(finished(results, EPISODES))
+    return told_episodes(records_of(results, EPISODES))
 
 
 def told_episodes(records: Sequence[EpisodeRecord]) -> pd.DataFrame:
@@ -208,7 +208,7 @@ def make(results: Path, out: Path) -> list[Path]:
     count = f"{len(episodes)} episodes, {int(episodes['success'].sum())} successful."
     parts = ["# Execution\n", f"{count} {LEGEND}\n"]
     files = [out / "episodes.csv", out / "tables.md"]
-    episodes.to_csv(files[0], index=False)
+    write_csv(episodes, files[0])
     for benchmark, title in BENCHMARKS.items():
         if not (episodes["benchmark"] == benchmark).any():
             continue

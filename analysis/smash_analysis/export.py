@@ -11,12 +11,12 @@ from typing import Any
 
 import pandas as pd
 
-from smash.records.episodes import EpisodeRecord
 from smash.records.files import EPISODES
-from smash.records.reading import finished_runs, read
 from smash.records.runs import RunRecord
+from smash_analysis.tables.believed import records_of, runs_of
 from smash_analysis.tables.episodes import actions_table, episodes_table
 from smash_analysis.tables.runs import incumbents_table, runs_table, steps_table
+from smash_analysis.tables.writing import write_csv
 
 EXPORT_VERSION = "smash-tables/1"
 """Written into the metadata of every Parquet file; columns may be added within a version."""
@@ -47,8 +47,15 @@ def tidy_runs(records: list[RunRecord]) -> pd.DataFrame:
     not_plain = (*FLATTENED, *AS_JSON, *IN_OWN_TABLES, "load_average")
     table = runs_table(records).drop(columns=list(not_plain), errors="ignore")
     table = pd.concat([table, flat.set_index(table.index)], axis="columns")
-    table["started"] = pd.to_datetime(table["started"], utc=True)
-    return table.astype(TYPES)
+    table["started"] = pd.to_datetime(table["started"], utc=True, format="ISO8601", errors="coerce")
+    further = {name: "string" for name in table.columns if name not in TYPES and _mixed(table[name])}
+    return table.astype(TYPES | further)
+
+
+def _mixed(column: pd.Series[Any]) -> bool:
+    """Whether a column, of a field that this version does not know, holds texts beside other values."""
+    kinds = {type(value) for value in column if value is not None}
+    return column.dtype == object and len(kinds) > 1
 
 
 def _flat(record: RunRecord) -> dict[str, Any]:
@@ -62,14 +69,8 @@ def _flat(record: RunRecord) -> dict[str, Any]:
     return columns | {name: json.dumps(getattr(record, name)) for name in AS_JSON}
 
 
-def _carried_out(results: Path) -> list[EpisodeRecord]:
-    reading = read(results, EPISODES, escaped=True)
-    reading.refuse_damage(but_last=True)
-    return reading.records
-
-
 def export(results: Path, out: Path) -> list[tuple[Path, int]]:
-    """Write every table as .parquet and .csv to `out`; return (file, rows) of each.
+    """Write every table of the runs as they are believed as .parquet and .csv to `out`; return (file, rows) of each.
 
     Raises:
         MalformedFile: where there are no records to be read, or they are damaged.
@@ -78,10 +79,10 @@ def export(results: Path, out: Path) -> list[tuple[Path, int]]:
     import pyarrow as pa
     from pyarrow import parquet
 
-    records = finished_runs(results)
+    records = runs_of(results)
     tables = {"runs": tidy_runs(records), "incumbents": incumbents_table(records), "steps": steps_table(records)}
     if EPISODES.path(results).is_file():
-        carried_out = _carried_out(results)
+        carried_out = records_of(results, EPISODES)
         tables |= {"episodes": episodes_table(carried_out), "actions": actions_table(carried_out)}
     out.mkdir(parents=True, exist_ok=True)
     files = []
@@ -89,6 +90,6 @@ def export(results: Path, out: Path) -> list[tuple[Path, int]]:
         arrow = pa.Table.from_pandas(table, preserve_index=False)
         metadata = {**(arrow.schema.metadata or {}), b"format": EXPORT_VERSION.encode()}
         parquet.write_table(arrow.replace_schema_metadata(metadata), out / f"{name}.parquet")
-        table.to_csv(out / f"{name}.csv", index=False)
+        write_csv(table, out / f"{name}.csv")
         files += [(out / f"{name}.{ending}", len(table)) for ending in ("parquet", "csv")]
     return files

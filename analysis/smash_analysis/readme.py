@@ -10,17 +10,18 @@ from __future__ import annotations
 import argparse
 import hashlib
 import re
-import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from smash.problem.errors import MalformedFile
-from smash.records.reading import NoRecords, finished_runs
+from smash.problem.errors import MalformedFile, SmashError
+from smash.records.reading import NoRecords
 from smash_analysis.charts.heatmaps import planner_figure
+from smash_analysis.command import fail
 from smash_analysis.scaling import scaling_chart
+from smash_analysis.tables.believed import runs_of
 from smash_analysis.tables.cells import matched_cells, variant_cells
 from smash_analysis.tables.readings import readings
 
@@ -40,7 +41,7 @@ Drawing = tuple[str, Callable[[], "Figure"]]
 def ablation(results: Path) -> Drawing:
     """Return the contracted gadget's heatmaps, cold, on the paper's multi-goal set."""
     label, suite = "smash-layered cold", "multi-9"
-    read = readings([r for r in finished_runs(results / "ablation") if (r.label, r.suite) == (label, suite)])
+    read = readings([r for r in runs_of(results / "ablation") if (r.label, r.suite) == (label, suite)])
     cells, matched = variant_cells(read), matched_cells(read)
     return data_hash(cells, matched), lambda: planner_figure(label, suite, cells, matched)
 
@@ -132,12 +133,12 @@ def main() -> None:
     parser.add_argument("--root", type=Path, default=ROOT, help="of README.md and docs/ (default: the repository)")
     arguments = parser.parse_args()
     if arguments.root == ROOT and not (ROOT / "README.md").is_file():
-        sys.exit("smash: no README.md here: run it in a checkout of the repository, or give --root and --results")
+        fail(SmashError("no README.md here: run it in a checkout of the repository, or give --root and --results"))
     try:
         for name, what in update(arguments.results, arguments.root):
             print(f"{name}: {what}")
     except OSError as error:
-        sys.exit(f"smash: {error.filename}: {error.strerror}")
+        fail(MalformedFile(str(error.filename), str(error.strerror)))
 
 
 if __name__ == "__main__":

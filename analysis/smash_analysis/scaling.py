@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from smash.records.reading import finished_runs
 from smash.records.runs import RunRecord
 from smash_analysis import command
 from smash_analysis.charts.panels import Chart, Panel, curves
+from smash_analysis.tables.believed import runs_of
 from smash_analysis.tables.runs import runs_table
-from smash_analysis.tables.writing import markdown
+from smash_analysis.tables.writing import markdown, write_csv
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -127,10 +127,10 @@ def make(results: Path, out: Path) -> list[Path]:
     Raises:
         MalformedFile: where there is nothing to read.
     """
-    cells = scaling_cells(finished_runs(results))
+    cells = scaling_cells(runs_of(results))
     out.mkdir(parents=True, exist_ok=True)
     files = [out / "scaling.csv", out / "scaling.md"]
-    cells.to_csv(files[0], index=False)
+    write_csv(cells, files[0])
     shown = cells.copy()
     for column in ("first_seconds", "proof_seconds", "worst_proof_seconds"):
         shown[column] = [f"{value:.3g}" if math.isfinite(value) else "–" for value in shown[column]]

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from smash.records.reading import finished_runs
 from smash.records.runs import RunRecord
 from smash_analysis import command
 from smash_analysis.execution_tables import read_episodes
 from smash_analysis.statistics.intervals import bootstrap, bootstrap_ratio
-from smash_analysis.tables.writing import SPREADS, latex, markdown, with_spread
+from smash_analysis.tables.believed import runs_of
+from smash_analysis.tables.writing import SPREADS, latex, markdown, with_spread, write_csv
 
 BASELINE = "no-topple-no-carry-no-lift"
 NAMES = {
@@ -111,12 +111,12 @@ def make(results: Path, out: Path) -> list[Path]:
     Raises:
         MalformedFile: where there are no runs or no episodes, or they are damaged.
     """
-    table = scoop_table(finished_runs(results), read_episodes(results))
+    table = scoop_table(runs_of(results), read_episodes(results))
     out.mkdir(parents=True, exist_ok=True)
     files = [out / "scoop.md", out / "scoop.tex", out / "scoop.csv"]
     files[0].write_text(f"# The scoop\n\n{LEGEND}\n\n{markdown(table)}", encoding="utf-8")
     files[1].write_text(latex(table, "The demonstration of the scoop", "tab:scoop"), encoding="utf-8")
-    table.to_csv(files[2], index=False)
+    write_csv(table, files[2])
     return files
 
 

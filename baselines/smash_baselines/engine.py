@@ -12,8 +12,10 @@ from time import monotonic
 from typing import Any, ClassVar, Self
 
 from smash.planners.protocol import OnIncumbent, ProblemPlanner, Settings, SolveLog
+from smash.problem.actions.registry import FAMILY
 from smash.problem.errors import IllegalAction, PlannerCrashed, PlannerOutOfMemory, Unsupported
 from smash.problem.feasibility import why_contradictory
+from smash.problem.model import Instance
 from smash.problem.plan import Plan
 from smash.problem.problem import Problem
 from smash_baselines.encodings import COMPOSED, UnknownEncoding, encoding_names, get_encoding, unsupported_reason
@@ -56,6 +58,25 @@ class Run:
         self.log.prove(bound, self.origin)
 
 
+MOST_SUM = 2**31 - 1
+"""Highest sum of costs that engines are trusted with: theirs are 32-bit integers, which wrap around unsaid."""
+
+
+def beyond_integers(instance: Instance) -> str | None:
+    """Return why the costs of an instance are beyond what engines can sum, or None.
+
+    Asked is what an engine may come to add: two of the dearest moves for each block, a topple with each.
+    """
+    costs = instance.costs
+    places = list(costs.positions) if costs.travel else []
+    farthest = max((costs.distance(a, b) for a in places for b in places), default=0)
+    dearest = costs.of("pick") + costs.of("place") + max(map(costs.of, FAMILY)) + 2 * farthest
+    most = 2 * dearest * max(1, len(instance.blocks))
+    if most <= MOST_SUM:
+        return None
+    return f"its costs may add up to {most:,}; engines count to {MOST_SUM:,}"
+
+
 class EnginePlanner(ProblemPlanner):
     """A planner that hands the compiled problem to an engine outside of this process."""
 
@@ -81,7 +102,7 @@ class EnginePlanner(ProblemPlanner):
     def refuses(self, problem: Problem, settings: Settings) -> str | None:
         """Return why the encoding cannot say the problem, or None."""
         encoding = self.encoding_of(problem)
-        reason = unsupported_reason(problem, encoding)
+        reason = unsupported_reason(problem, encoding) or beyond_integers(problem.instance)
         if reason is not None or not problem.options.topple or self.takes_conditional_effects():
             return reason
         if get_encoding(encoding).conditional_effects:

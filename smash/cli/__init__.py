@@ -13,6 +13,7 @@ import click
 
 from smash.problem.errors import SmashError
 from smash.problem.extras import missing_extra
+from smash.problem.words import one_line
 
 COMMANDS: dict[str, tuple[str, str]] = {
     "generate": ("smash.cli.generate", "make random benchmark instances (single-goal, multi-goal)"),
@@ -89,7 +90,7 @@ def smash() -> None:
 
 def fail(message: str, code: int) -> NoReturn:
     """Print one line on stderr and end with `code`."""
-    print("smash: " + " ".join(message.split()), file=sys.stderr)
+    print(f"smash: {one_line(message)}", file=sys.stderr)
     sys.stdout.flush()
     sys.exit(code)
 

@@ -10,6 +10,7 @@ import click
 from smash.problem.errors import MalformedFile
 from smash.problem.files.documents import read_bytes, write_text
 from smash.problem.files.plans import read_plan
+from smash.problem.words import one_line
 
 list_option = click.option(
     "--list",
@@ -48,6 +49,7 @@ def update(results: tuple[Path, ...], directory: Path | None) -> None:
     """
     from smash.experiments.best_known.files import FILE, list_to_write, read_best_known, write_best_known
     from smash.experiments.best_known.standing import BestKnown
+    from smash.records.believing import believed
     from smash.records.files import RUNS
     from smash.records.reading import read
 
@@ -58,8 +60,10 @@ def update(results: tuple[Path, ...], directory: Path | None) -> None:
         if not RUNS.path(folder).is_file():
             raise MalformedFile(str(folder), f"no {RUNS.name} there: not what a sweep writes")
         reading = read(folder, RUNS)
-        reading.refuse_damage()
-        for record in reading.records:
+        found = believed(reading.records)
+        for line in (*found.lines(), *reading.notes()):
+            click.echo(one_line(line), err=True)
+        for record in found.records:
             entries = known.offer_record(record)
             others += entries is None
             improved += len(entries or [])

@@ -9,7 +9,7 @@ import click
 
 from smash.cli import fail
 from smash.cli.choices import SECONDS
-from smash.problem.certificate import certificate_text
+from smash.problem.certificate import certificate_text, why_not_certified
 from smash.problem.files.documents import write_text
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import read_plan
@@ -31,6 +31,8 @@ from smash.problem.problem import Problem
 def command(instance: Path, plan: Path, budget: float, out: Path) -> None:
     """Write a certificate of a lower bound on all plans with PLAN's options (topple or not, cap).
 
+    Exit 6 where its argument does not cover the instance: with carries, lifts, costs, blocks on a carrier.
+
     The certificate lists cycles of precedence and the arithmetic of the bound; `smash verify` follows it
     without a solver. It counts no buffers: where few of them make plans dearer, it stays below.
 
@@ -46,10 +48,11 @@ def command(instance: Path, plan: Path, budget: float, out: Path) -> None:
     if filed.instance != problem.name:
         fail(f"{plan}: the plan is for instance {filed.instance!r}, not {problem.name!r}", 3)
     asked = Problem(problem, filed.options)
+    why_not = why_not_certified(problem, filed.options)
+    if why_not is not None:
+        fail(f"{instance}: no certificate proves a bound here: {why_not}", 6)
     if asked.infeasible is not None:
         fail(f"{instance}: proven infeasible: {asked.infeasible}", 3)
-    if not asked.plain:
-        fail(f"{instance}: unsupported: a certificate counts picks, places and topples alone, each at cost 1", 6)
     certificate = certify(asked, perf_counter() + budget)
     write_text(out, certificate_text(certificate))
     note = f" ({certificate.note})" if certificate.note else ""

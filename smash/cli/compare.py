@@ -14,6 +14,9 @@ from smash.experiments.comparison import comparison_of
 from smash.experiments.isolation.job import DEFAULT_MEMORY
 from smash.experiments.sweeps.keep import keep
 from smash.problem.extras import TABLES, require
+from smash.problem.words import one_line
+from smash.records.believing import believed_runs
+from smash.records.runs import RunRecord
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -59,6 +62,7 @@ def command(
 ) -> None:
     """Run every planner on every instance of each SUITE (a committed set or a directory) and compare.
 
+    What contradicts stands first: a planner with a false claim proves nothing in the tables.
     The records go to OUT/runs.jsonl, tables and curves to OUT/comparison; stopped, it goes on where it was. Records of
     other comparisons that stand there are kept and left out of the tables.
 
@@ -93,15 +97,17 @@ def command(
     out = out or Path("runs") / name
     runs = installed_runs(experiment, Path())
     run_all(runs, out, jobs, dask, partial(keep, experiment, Path(), out))
-    keys = {run.key for run in runs}
-    files = comparison.make(out, out / "comparison", keys)
-    _show(comparison, out, keys)
+    found = believed_runs(out, {run.key for run in runs})
+    for line in found.lines():
+        click.echo(one_line(line))
+    files = comparison.write(found, out / "comparison")
+    _show(comparison, found.records)
     click.echo("\n".join(map(str, files)))
 
 
-def _show(comparison: Any, out: Path, keys: set[str]) -> None:
+def _show(comparison: Any, records: list[RunRecord]) -> None:
     """Print the table, its settings as headings, and how the runs ended."""
-    runs = comparison.compared(comparison.comparable(comparison.finished_runs(out, keys)))
+    runs = comparison.compared(comparison.comparable(records))
     table = comparison.comparison_table(runs)
     for setting, part in table.groupby(comparison.GROUP, sort=True):
         suite, blocks, count, variant = setting

@@ -10,6 +10,7 @@ import click
 from smash.cli import fail
 from smash.problem.extras import require
 from smash.problem.files.instances import instance_from_document, read_instance, write_instance
+from smash.problem.words import one_line
 
 
 @click.command("costs")
@@ -39,12 +40,12 @@ def command(results: Path, instance: Path, scene: Path | None, out: Path | None)
     tabletop = default_scene() if scene is None else read_scene(scene)
     positions = unrolled_positions(tabletop, problem)
     runs, episodes = read(results, RUNS), read(results, EPISODES)
-    runs.refuse_damage()
-    episodes.refuse_damage()
+    for note in (*runs.notes(), *episodes.notes()):
+        click.echo(one_line(note), err=True)
     filed = {run.key: run.instance_document for run in runs.records}
     measured: list[Duration] = []
     for record in episodes.records:
-        if record.episode is not None:
+        if record.episode is not None and record.run in filed:
             done = instance_from_document(filed[record.run])
             measured += durations(record.episode.actions, done, unrolled_positions(tabletop, done))
     if not measured:

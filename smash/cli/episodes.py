@@ -13,6 +13,7 @@ from smash.experiments.episodes.series import POLICIES, REPLAYS, episode_runs, r
 from smash.experiments.sweeps.display import span
 from smash.problem.errors import Interrupted
 from smash.problem.extras import EXECUTION, require
+from smash.problem.words import one_line
 from smash.records.episodes import EpisodeRecord
 from smash.records.files import EPISODES
 from smash.records.writing import Writer
@@ -69,9 +70,8 @@ def command(
     with stopped_by_signals() as stop, Writer(results, EPISODES) as records:
         left = sum(run.key not in records.finished for run in runs)
         about = span(left * SECONDS_AN_EPISODE / jobs)
-        if records.set_aside:
-            words = "was damaged: set aside, its episode is carried out again"
-            click.echo(f"the last line of {records.path} {words}", err=True)
+        for line in records.set_aside:
+            click.echo(one_line(f"{line}: damaged: set aside, its episode is carried out again"), err=True)
         click.echo(f"{len(runs)} episodes, {left} left, about {about} with {jobs} at a time", err=True)
         bare = sum(run.key in records.finished and not Path(run.replay).exists() for run in runs if run.replay)
         if bare:

@@ -158,9 +158,10 @@ def _end(report: Report, instance: Path, planner: str, budget: float) -> None:
         found = f"; the best plan so far has cost {report.plan.cost}"
     elif report.plan.lower_bound is not None:
         found = f" without a plan; none is cheaper than {report.plan.lower_bound}"
-    why = report.plan.details.get("reason")
+    said = report.plan.details.get("reason")
+    why = f": {said}" if isinstance(said, str) else ""
     words = {
-        "infeasible": f"proven infeasible: {why}" if isinstance(why, str) else "proven infeasible",
+        "infeasible": f"infeasible, {report.reason}" if report.reason else f"proven infeasible{why}",
         "budget-spent": _without_plan(report, budget),
         "interrupted": f"interrupted{found}",
     }.get(report.outcome, f"{report.outcome}: {report.reason}")

@@ -6,6 +6,7 @@ import click
 
 from smash.planners.registry import get_planner, planner_names
 from smash.problem.errors import Unsupported
+from smash.problem.words import one_line
 
 
 @click.command("planners")
@@ -17,6 +18,9 @@ def command() -> None:
             planner = get_planner(name)
         except Unsupported as error:
             rows.append((name, "-", "-", str(error).split(": ", 1)[-1]))
+            continue
+        except (Exception, SystemExit) as error:  # another's package: it must not hide the others
+            rows.append((name, "-", "-", one_line(f"broken: {type(error).__name__}: {error}")))
             continue
         rows.append(
             (

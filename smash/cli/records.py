@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,10 +11,12 @@ import click
 
 from smash.problem.errors import MalformedFile
 from smash.problem.extras import TABLES, require
+from smash.problem.words import one_line, visible
 
 if TYPE_CHECKING:
     from smash.experiments.sweeps.audit import Check
     from smash.experiments.sweeps.experiment import Run
+    from smash.records.runs import RunRecord
 
 results_argument = click.argument("results", type=click.Path(path_type=Path, file_okay=False))
 
@@ -40,6 +43,9 @@ def command() -> None:
 def check(results: Path, experiment: Path | None) -> None:
     """Check RESULTS/runs.jsonl: complete, nothing twice, one commit, outcomes explained, plans legal, lines whole.
 
+    What is claimed of all plans is held against every plan: across planners, variants, buffers and certificates
+    (RESULTS/*.json, RESULTS/certificates).
+
     Where there are episodes (RESULTS/episodes.jsonl) the same is asked of them. Exit 0 where all is well, 3 otherwise,
     with one line a finding on stderr. Every recorded plan is judged by the law again. What is missing or damaged is
     done again where the sweep is started again.
@@ -52,29 +58,36 @@ def check(results: Path, experiment: Path | None) -> None:
     from smash.experiments.episodes.audit import audit_episodes
     from smash.experiments.sweeps.audit import audit
 
-    checks = audit(results, _planned(results, experiment)) + audit_episodes(results)
+    checks = audit(results, partial(_planned, results, experiment)) + audit_episodes(results)
     _show(checks)
     findings = [finding for check in checks for finding in check.findings]
     for finding in findings:
-        click.echo(" ".join(finding.split()), err=True)
+        click.echo(one_line(finding), err=True)
     if findings:
         raise click.exceptions.Exit(3)
 
 
-def _planned(results: Path, given: Path | None) -> Sequence[Run] | str:
+def _planned(results: Path, given: Path | None, records: Sequence[RunRecord]) -> Sequence[Run] | str:
     """Return the runs that were planned, or why they are not known: only a file that was asked for must be there.
+
+    Args:
+        results: the directory.
+        given: the experiment file that was asked for.
+        records: tell of planners that are not here whether they were run at each budget by itself.
 
     Raises:
         MalformedFile: where the file cannot be read, or a set that it names is not there.
     """
-    from smash.experiments.sweeps.experiment import experiment_runs, read_experiment
+    from smash.experiments.sweeps.experiment import budget_dependent, experiment_runs, read_experiment
 
     copy = results / "experiment.toml"
     if given is None and not copy.is_file():
         return "no experiment.toml there; --experiment FILE names it"
     file = given or copy
+    at_each = {record.planner: record.kind == "budget" for record in records if record.kind != "cutoff"}
     try:
-        return experiment_runs(read_experiment(file), file.parent)
+        experiment = read_experiment(file, to_run=False)
+        return experiment_runs(experiment, file.parent, lambda name: at_each.get(name, False) or budget_dependent(name))
     except MalformedFile as error:
         if given is not None:
             raise
@@ -94,7 +107,7 @@ def _show(checks: Sequence[Check]) -> None:
         mark = Text(str(len(check.findings)), style="red") if check.findings else Text("well", style="green")
         if check.answer.startswith("not known"):
             mark = Text("?", style="yellow")
-        table.add_row(Text(check.question), mark, Text(check.answer))
+        table.add_row(Text(check.question), mark, Text(visible(check.answer)))
     console.print(table)
 
 

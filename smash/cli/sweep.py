@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
@@ -19,7 +19,9 @@ from smash.experiments.sweeps.experiment import Experiment, Run, experiment_runs
 from smash.experiments.sweeps.keep import keep
 from smash.experiments.sweeps.sweep import execute, local_task, sweep
 from smash.problem.files.documents import write_text
+from smash.problem.words import one_line
 from smash.records.files import RUNS
+from smash.records.outcomes import OUTCOMES
 from smash.records.runs import RunRecord
 from smash.records.writing import Writer
 
@@ -29,6 +31,13 @@ from smash.records.writing import Writer
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Runs at a time (default: the file's `jobs`).")
 @click.option("--dask", metavar="ADDRESS", help="Run on the Dask scheduler at tcp://host:8786, or of a scheduler file.")
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Default: runs/NAME-OF-EXPERIMENT.")
+@click.option(
+    "--redo",
+    type=click.Choice(sorted(set(OUTCOMES) - {"interrupted", "malformed"})),
+    multiple=True,
+    metavar="OUTCOME",
+    help="Do recorded runs that ended so again (crashed, memory, …); may stand several times.",
+)
 @click.option("--dry-run", is_flag=True, help="Check the file, say how many runs it means and how long at most.")
 @click.option(
     "--slurm-script",
@@ -37,7 +46,13 @@ from smash.records.writing import Writer
     help="Write a Slurm batch script that runs it with --jobs workers, and run nothing.",
 )
 def command(
-    experiment: Path, jobs: int | None, dask: str | None, out: Path | None, dry_run: bool, slurm_script: Path | None
+    experiment: Path,
+    jobs: int | None,
+    dask: str | None,
+    out: Path | None,
+    redo: tuple[str, ...],
+    dry_run: bool,
+    slurm_script: Path | None,
 ) -> None:
     """Do every run of EXPERIMENT.toml and record each as one line of OUT/runs.jsonl.
 
@@ -46,6 +61,7 @@ def command(
     \b
     Examples:
       smash sweep experiments/ablation.toml --jobs 2
+      smash sweep experiments/ablation.toml --redo crashed --redo memory
       smash sweep experiments/ablation-full.toml --dask tcp://head:8786 --out runs/full
       smash sweep experiments/ablation-full.toml --jobs 40 --slurm-script full.sh && sbatch full.sh
     """
@@ -62,7 +78,7 @@ def command(
         write_text(slurm_script, batch_script(runs, experiment, out, width))
         click.echo(f"{slurm_script}: {len(runs)} runs with {width} workers, to be submitted with sbatch")
         return
-    run_all(runs, out, width, dask, partial(keep, read, experiment.parent, out, experiment))
+    run_all(runs, out, width, dask, partial(keep, read, experiment.parent, out, experiment), redo)
 
 
 def installed_runs(experiment: Experiment, base: Path) -> list[Run]:
@@ -75,7 +91,14 @@ def installed_runs(experiment: Experiment, base: Path) -> list[Run]:
     return [run for planner, run in runs if planner not in lacking]
 
 
-def run_all(runs: list[Run], out: Path, jobs: int, dask: str | None, keep: Callable[[], None]) -> None:
+def run_all(
+    runs: list[Run],
+    out: Path,
+    jobs: int,
+    dask: str | None,
+    keep: Callable[[], None],
+    redo: Collection[str] = (),
+) -> None:
     """Do what is left of `runs`, recorded in `out`, and say how it went.
 
     Args:
@@ -84,11 +107,17 @@ def run_all(runs: list[Run], out: Path, jobs: int, dask: str | None, keep: Calla
         jobs: runs at a time, here.
         dask: where a scheduler is, or None.
         keep: writes what is run beside the records, once the directory is ours.
+        redo: outcomes of recorded runs that are done again.
 
     Raises:
         SmashError: where the directory is in use or damaged, the scheduler cannot be reached, or it was interrupted.
     """
-    with stopped_by_signals() as stop, Writer(out, RUNS) as records:
+    meant = {run.key for run in runs}
+
+    def again(record: RunRecord) -> bool:
+        return record.key in meant and record.outcome in redo
+
+    with stopped_by_signals() as stop, Writer(out, RUNS, again) as records:
         keep()
         kept = sum(run.key in records.finished for run in runs)
         _say_state(records, runs, kept)
@@ -98,8 +127,10 @@ def run_all(runs: list[Run], out: Path, jobs: int, dask: str | None, keep: Calla
 
 
 def _say_state(records: Writer[RunRecord], runs: list[Run], kept: int) -> None:
-    if records.set_aside:
-        click.echo(f"the last line of {records.path} was damaged: set aside, its run is done again", err=True)
+    for line in records.set_aside:
+        click.echo(one_line(f"{line}: damaged: set aside, its run is done again"), err=True)
+    if records.redone:
+        click.echo(f"{records.redone} recorded runs are done again; their records lie in runs.redone", err=True)
     if kept:
         now, meant = commit().hash, {run.key for run in runs}
         old = sum(record.key in meant and record.commit.hash != now for record in records.earlier)

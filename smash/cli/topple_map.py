@@ -11,6 +11,7 @@ import click
 from smash.cli.signals import stopped_by_signals
 from smash.problem.errors import Interrupted
 from smash.problem.extras import EXECUTION, require
+from smash.problem.words import one_line
 
 if TYPE_CHECKING:
     require("smash topple-map", *EXECUTION, "matplotlib")
@@ -56,8 +57,8 @@ def command(highest_cut: int, most: int, seeds: int, scene: Path | None, jobs: i
 
     with stopped_by_signals() as stop, Writer(out, TRIALS) as records:
         trials |= {trial.key: trial for trial in records.earlier}
-        if records.set_aside:
-            click.echo(f"the last line of {records.path} was damaged: set aside, its trial is done again", err=True)
+        for line in records.set_aside:
+            click.echo(one_line(f"{line}: damaged: set aside, its trial is done again"), err=True)
         run_trials(tabletop, wanted, records, jobs, stop, ended)
         if stop.is_set():
             raise Interrupted("interrupted; every finished trial is recorded, start again to do the rest")

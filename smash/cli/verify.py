@@ -20,7 +20,8 @@ from smash.problem.plan import check_plan
 def command(instance: Path, plan: Path, certificate: Path) -> None:
     """Check PLAN by the law and CERTIFICATE from the ground up, without a solver.
 
-    Exit 0 where the certificate proves the plan's lower bound (an optimal plan's cost), 3 where it does not.
+    Exit 0 where the certificate proves the plan's lower bound (an optimal plan's cost), 3 where it does not, 6 where
+    its argument does not cover the instance: with carries, lifts, costs, blocks on a carrier.
 
     \b
     Example:
@@ -33,9 +34,12 @@ def command(instance: Path, plan: Path, certificate: Path) -> None:
     if not verdict.accepted:
         fail(f"{plan}: {verdict}", 3)
     bound = proven_bound(problem, filed.options, read_certificate(certificate))
+    if filed.cost is not None and bound > filed.cost:
+        fail(f"{certificate}: its bound {bound} is above the cost {filed.cost} of this legal plan", 3)
     if filed.cost == bound:
         click.echo(f"verified: legal, and no plan has fewer than its {bound} actions")
-    elif filed.lower_bound is None or filed.lower_bound <= bound:
+    elif filed.status != "optimal" and (filed.lower_bound is None or filed.lower_bound <= bound):
         click.echo(f"verified: legal with {filed.cost} actions, and no plan has fewer than {bound}")
     else:
-        fail(f"{certificate}: proves the lower bound {bound}, the plan claims {filed.lower_bound}", 3)
+        claimed = filed.cost if filed.status == "optimal" else filed.lower_bound
+        fail(f"{certificate}: proves the lower bound {bound}, the plan claims {claimed}", 3)

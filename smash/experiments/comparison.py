@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -19,8 +20,8 @@ from smash.problem.files.given import GivenInstance, given_instance
 from smash.problem.files.instances import write_instance
 from smash.problem.model import Instance
 from smash.problem.sets.suites import read_suite
+from smash.records.believing import believed_runs
 from smash.records.files import RUNS
-from smash.records.reading import finished_runs
 from smash.records.runs import RunRecord
 from smash.records.writing import Writer
 
@@ -58,6 +59,8 @@ def compare(
         `best_seconds` (when the first and the best plan were found), `wall_seconds` and `memory_mib` (what the run
         took); `solved`, `proven`, `outcome` and `reason` (how it ended).
 
+    A planner with a claim that another's plan shows to be false proves nothing there, which a warning says.
+
     Raises:
         MissingExtra: where the extra `analysis` is not installed.
         SmashError: where there is nothing to run, or an argument is wrong; a planner that fails is a row that says so.
@@ -77,7 +80,10 @@ def compare(
         experiment = comparison_of([str(suite)], names, budget=budget, variants=variants)
         runs = experiment_runs(experiment)
         _do(runs, out)
-        table = compared(finished_runs(out, {run.key for run in runs}))
+        found = believed_runs(out, {run.key for run in runs})
+        table = compared(found.records)
+    for line in found.lines():
+        warnings.warn(line, stacklevel=2)
     return table.reindex(columns=[*COLUMNS, *metric_names(table)]).assign(planner=table["label"])
 
 

@@ -55,10 +55,12 @@ def versions(planner: str) -> dict[str, str]:
     return found
 
 
+@cache
 def commit() -> Commit:
     """Return the commit of this code and whether files were changed since (both None outside a repository).
 
-    Asked anew for each run: each starts an interpreter of its own, so a checkout during a sweep changes the code.
+    Asked once in a process: three calls of git would cost a tiny run more than its planner does. Whoever changes the
+    code during a sweep mixes two commits under the name of the first.
     """
     here = Path(__file__).parent
 

@@ -12,6 +12,7 @@ from smash.problem.files.given import GivenInstance, given_instance
 from smash.problem.model import Instance, PlanOptions
 from smash.problem.plan import Plan, check_plan
 from smash.problem.problem import Problem
+from smash.records.claims import claimed_infeasible
 from smash.records.outcomes import OutcomeName
 
 LONGEST = 1e9
@@ -110,6 +111,10 @@ def _judged(answer: Plan, instance: Instance) -> Plan:
     if found != (answer.status in ("optimal", "feasible")):
         words = f"status {answer.status} {'with' if found else 'without'} a plan"
         raise PlannerCrashed(f"planner {answer.planner!r}: refused: {words}")
+    if answer.status == "infeasible" and claimed_infeasible(Problem(instance, answer.options)) is False:
+        raise PlannerCrashed(
+            f"planner {answer.planner!r}: refused: status infeasible, yet start and goal show that there is a plan"
+        )
     verdict = check_plan(instance, answer) if found else None
     if verdict is not None and not verdict.accepted:
         raise PlannerCrashed(f"planner {answer.planner!r}: {verdict}")

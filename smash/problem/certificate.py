@@ -22,13 +22,15 @@ from typing import Literal, cast
 
 import msgspec
 
-from smash.problem.errors import MalformedFile
+from smash.problem.actions.registry import kinds_of
+from smash.problem.errors import MalformedFile, Unsupported
 from smash.problem.files.documents import convert, parse_json, read_bytes
 from smash.problem.hand import after_place, distinct_locations
 from smash.problem.model import Instance, OnGoal, PlanOptions, StacksGoal
 from smash.problem.problem import Problem
 from smash.problem.views.posed import posed
 
+CERTIFICATE_FORMAT = "smash-certificate/1"
 ONE = 1_000_000
 """Weights are whole millionths of an action."""
 PLACE_COST = 1
@@ -111,18 +113,35 @@ class _Choice:
     cost: int
 
 
+def why_not_certified(instance: Instance, options: PlanOptions) -> str | None:
+    """Return why the argument of certificates does not cover a problem, or None where it does.
+
+    It counts picks, places and topples at cost 1 of blocks that start at locations, in the table region or in the hand.
+    """
+    further = [kind.name for kind in kinds_of(instance, options) if kind.name != "topple"]
+    if further:
+        return f"plans may use {' and '.join(further)}, the proof counts picks, places and topples alone"
+    if not instance.costs.plain:
+        return "its actions have costs, the proof counts each as 1"
+    if any(carrier.holds for carrier in instance.carriers):
+        return "blocks start on a carrier, the proof knows locations and the table region alone"
+    return None
+
+
 def proven_bound(instance: Instance, options: PlanOptions, certificate: Certificate) -> int:
     """Check a certificate from the ground up and return the lower bound that it proves.
 
     Raises:
         RefusedCertificate: with the step that does not hold.
+        Unsupported: where the argument does not cover the instance (`why_not_certified`).
     """
+    why_not = why_not_certified(instance, options)
+    if why_not is not None:
+        raise Unsupported(f"{instance.name}: no certificate proves a bound here: {why_not}")
     if certificate.instance != instance.name:
         raise RefusedCertificate(f"it is for instance {certificate.instance!r}, not {instance.name!r}")
     if (certificate.topple, certificate.max_topple) != (options.topple, options.max_topple):
         raise RefusedCertificate("its topple options are not those of the plan")
-    if not Problem(instance, options).plain:
-        raise RefusedCertificate("a proof counts picks, places and topples alone, each at cost 1")
     if instance.hand is None:
         if certificate.first_places:
             raise RefusedCertificate("it has first places, and the hand is empty at the start")

@@ -268,6 +268,14 @@ class PlanOptions:
         """Return whether the aggregating action called `name` is allowed."""
         return self.topple if name == "topple" else name not in self.without
 
+    def includes(self, narrow: PlanOptions) -> bool:
+        """Return whether every plan under `narrow` is one under these, so that their bounds hold for `narrow` too."""
+        if not set(self.without) <= set(narrow.without):
+            return False
+        if not narrow.topple or not self.topple:
+            return not narrow.topple
+        return self.max_topple is None or (narrow.max_topple is not None and narrow.max_topple <= self.max_topple)
+
 
 @dataclass(slots=True)
 class State:

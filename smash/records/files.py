@@ -34,8 +34,12 @@ class RecordFile(Generic[R]):
         return results / self.name
 
     def aside(self, results: Path) -> Path:
-        """Return the file of the damaged last lines that earlier starts have set aside."""
+        """Return the file of the damaged lines that earlier starts have set aside."""
         return self.path(results).with_suffix(".damaged")
+
+    def redone(self, results: Path) -> Path:
+        """Return the file of the records that were asked to be done again."""
+        return self.path(results).with_suffix(".redone")
 
 
 RUNS = RecordFile("runs.jsonl", RUN_FORMAT, RunRecord, "run")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Hashable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic
@@ -11,9 +11,8 @@ import msgspec
 
 from smash.problem.errors import MalformedFile
 from smash.problem.files.documents import read_bytes
-from smash.records.files import RUNS, R, RecordFile
+from smash.records.files import R, RecordFile
 from smash.records.record import decoded
-from smash.records.runs import RunRecord
 
 NO_JSON = "no JSON"
 
@@ -45,42 +44,41 @@ class Reading(Generic[R]):
 
     Attributes:
         path: The file.
+        one: What one line tells of, in a word.
         lines: Every whole line, in their order.
         damaged: Every other line.
-        begins: Where the last line begins [bytes].
-        ended: Whether it has its end: a file that was cut off there must not be added to.
+        ended: Whether the last line has its end: a file that was cut off there must not be added to.
     """
 
     path: Path
+    one: str
     lines: list[Line[R]]
     damaged: list[Damaged]
-    begins: int
     ended: bool
 
     @property
     def records(self) -> list[R]:
-        """The whole records."""
-        return [line.record for line in self.lines]
+        """The whole records, each key once: of lines with equal keys the first counts."""
+        return list({line.record.key: line.record for line in reversed(self.lines)}.values())[::-1]
 
-    def refuse_damage(self, but_last: bool = False) -> None:
-        """Refuse a file with a damaged line, `but_last`: elsewhere than in its last line.
+    def repeated(self) -> Iterator[tuple[Line[R], Line[R]]]:
+        """Yield every line whose key an earlier one has, and that one."""
+        first: dict[Hashable, Line[R]] = {}
+        for line in self.lines:
+            earlier = first.setdefault(line.record.key, line)
+            if earlier is not line:
+                yield line, earlier
 
-        Raises:
-            MalformedFile: which names the first such line.
-        """
-        for line in self.damaged:
-            if not (but_last and line.last):
-                where = f"{self.path}:{line.number}"
-                raise MalformedFile(where, f"{line.reason}; set the line aside and start again")
+    def notes(self) -> Iterator[str]:
+        """Yield in words what of the file does not count."""
+        for damaged in self.damaged:
+            yield f"{self.path}:{damaged.number}: {damaged.reason}; left out, a resumed run does its {self.one} again"
+        for line, earlier in self.repeated():
+            yield f"{self.path}:{line.number}: has the key of line {earlier.number}; counted once"
 
 
-def read(results: Path, kind: RecordFile[R], escaped: bool = False) -> Reading[R]:
+def read(results: Path, kind: RecordFile[R]) -> Reading[R]:
     """Read a file of records.
-
-    Args:
-        results: the directory that holds it.
-        kind: which file.
-        escaped: whether names that are no Unicode text are escaped, for tables and pages (`record.decoded`).
 
     Raises:
         MalformedFile: where it cannot be read.
@@ -91,47 +89,25 @@ def read(results: Path, kind: RecordFile[R], escaped: bool = False) -> Reading[R
     lines, damaged = [], []
     for number, text in enumerate(texts, start=1):
         try:
-            lines.append(Line(number, decoded(text, kind.record, escaped)))
+            lines.append(Line(number, decoded(text, kind.record)))
         except msgspec.ValidationError as error:
             damaged.append(Damaged(number, f"no {kind.format} object: {error}", number == len(texts)))
-        except (ValueError, RecursionError):
-            damaged.append(Damaged(number, NO_JSON, number == len(texts)))
-    begins = len(content.removesuffix(b"\n")) - len(texts[-1]) if texts else 0
-    return Reading(path, lines, damaged, begins, content.endswith(b"\n") or not content)
+        except RecursionError:
+            damaged.append(Damaged(number, f"{NO_JSON}: nested too deeply", number == len(texts)))
+        except ValueError as error:
+            damaged.append(Damaged(number, f"{NO_JSON}: {error}", number == len(texts)))
+    return Reading(path, kind.one, lines, damaged, content.endswith(b"\n") or not content)
 
 
-def finished(results: Path, kind: RecordFile[R]) -> list[R]:
-    """Return what tables and pages are made from: all records, but for a damaged last line (a kill's trace).
+def finished(results: Path, kind: RecordFile[R]) -> Reading[R]:
+    """Return what a file holds that has something to show.
 
     Raises:
-        NoRecords: where there are none.
-        MalformedFile: where it cannot be read, or a line before the last is damaged.
+        NoRecords: where there is no whole record.
+        MalformedFile: where the file cannot be read.
     """
-    reading = read(results, kind, escaped=True)
-    reading.refuse_damage(but_last=True)
+    reading = read(results, kind)
     if not reading.lines:
-        raise NoRecords(str(reading.path), f"no finished {kind.one}")
-    return reading.records
-
-
-def finished_runs(results: Path, keys: Collection[str] | None = None) -> list[RunRecord]:
-    """Return the `finished` runs of a directory, or those of them that are meant.
-
-    Raises:
-        MalformedFile: as `finished`, and where runs under one label are of several solvers.
-    """
-    runs = [run for run in finished(results, RUNS) if keys is None or run.key in keys]
-    if not runs:
-        raise NoRecords(str(RUNS.path(results)), f"no finished {RUNS.one}")
-    _expect_one_solver(runs, str(RUNS.path(results)))
-    return runs
-
-
-def _expect_one_solver(runs: Iterable[RunRecord], where: str) -> None:
-    """Refuse runs that stand under one label and were solved by several solvers: a table would mix them."""
-    solvers: dict[str, str] = {}
-    for run in runs:
-        other = solvers.setdefault(run.label, run.solver)
-        if other != run.solver:
-            words = f"runs labelled {run.label!r} are of the solvers {other} and {run.solver}"
-            raise MalformedFile(where, f"{words}; tables do not mix solvers, give each a label of its own")
+        why = next((f"; line {line.number}: {line.reason}" for line in reading.damaged), "")
+        raise NoRecords(str(reading.path), f"no finished {kind.one}{why}")
+    return reading

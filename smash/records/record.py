@@ -3,12 +3,24 @@
 from __future__ import annotations
 
 import json
+import math
+import re
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import msgspec
 
+from smash.problem.words import visible
+
 T = TypeVar("T")
+Count = Annotated[int, msgspec.Meta(ge=0, le=2**53)]
+"""A number that tables can hold exactly."""
+Amount = Annotated[float, msgspec.Meta(ge=0, le=1e12)]
+Seconds = Amount
+_CLOSING = (b"]]]]]]", b"}}}}}}", b"]}]}]}", b"}]}]}]", b"] ] ] ]", b"} } } }")
+"""One of these stands in whatever is nested deeply: looked for first, as it is fast."""
+_DEEP = re.compile(rb"(?:[\]}]\s*){32}")
+"""What ends in so many brackets is no record, and too deep for some of its readers."""
 _TOP_LEVEL = msgspec.json.Decoder(dict[str, msgspec.Raw])
 
 
@@ -36,6 +48,9 @@ class Record(msgspec.Struct, kw_only=True, frozen=True, dict=True):
         return {name: self.document[name] for name in names if name not in self.__struct_fields__}
 
 
+R = TypeVar("R", bound=Record)
+
+
 class Commit(msgspec.Struct, frozen=True):
     """The commit of the code, and whether tracked files were changed; both None outside a repository."""
 
@@ -47,35 +62,50 @@ class Machine(msgspec.Struct, frozen=True):
     """The machine of the process that recorded; memory in MiB."""
 
     processor: str
-    cores: int | None
-    usable_cores: int | None
-    memory_mib: int
+    cores: Count | None
+    usable_cores: Count | None
+    memory_mib: Count
     system: str
 
 
-def decoded(line: bytes, kind: type[T], escaped: bool = False) -> T:
+def decoded(line: bytes, kind: type[T]) -> T:
     """Return the object of a line of JSON as a type; a record keeps what else stands there.
-
-    Args:
-        line: the text.
-        kind: the type.
-        escaped: whether names that are no Unicode text (a lone surrogate, which JSON allows and a table does not) are
-            escaped.
 
     Raises:
         msgspec.ValidationError: where it is JSON, and does not fit.
         ValueError: where it is no JSON.
     """
-    odd = escaped and b"\\ud" in line.lower()
-    if not odd:
-        try:
-            return _kept(msgspec.json.decode(line, type=kind), "line", line)
-        except msgspec.DecodeError:
-            pass  # what Python writes and strict JSON does not have (lone surrogates, NaN), or no record: see below
-    document = json.loads(line)
-    if odd:
-        document = _encodable(document)
+    if any(mark in line for mark in _CLOSING) and _DEEP.search(line):
+        raise ValueError("nested too deeply")
+    try:
+        return _kept(msgspec.json.decode(line, type=kind), "line", line)
+    except msgspec.DecodeError:
+        pass  # what Python writes and strict JSON does not have (lone surrogates), or no record: see below
+    document = json.loads(line, parse_float=_finite, parse_constant=_finite)
     return _kept(msgspec.convert(document, kind), "document", document)
+
+
+def shown(record: R) -> R:
+    """Return a record as tables and pages show it: in names, what cannot be printed is escaped."""
+    line = record.__dict__.get("line")
+    if line is not None and line.isascii() and b"\\" not in line and b"\x7f" not in line:
+        return record
+    document = {name: part if name == "log" else _visible(part) for name, part in record.document.items()}
+    return (
+        record if document == record.document else _kept(msgspec.convert(document, type(record)), "document", document)
+    )
+
+
+def _finite(text: str) -> float:
+    """Return a number of JSON.
+
+    Raises:
+        ValueError: where it is none: `NaN`, `Infinity`, or one that is too large.
+    """
+    number = float(text)
+    if not math.isfinite(number):
+        raise ValueError(f"{text} is no number of JSON")
+    return number
 
 
 def _kept(made: T, name: str, value: object) -> T:
@@ -84,12 +114,12 @@ def _kept(made: T, name: str, value: object) -> T:
     return made
 
 
-def _encodable(value: Any) -> Any:
+def _visible(value: Any) -> Any:
     match value:
         case str():
-            return value.encode(errors="backslashreplace").decode()
+            return visible(value)
         case list():
-            return [_encodable(part) for part in value]
+            return [_visible(part) for part in value]
         case dict():
-            return {_encodable(name): _encodable(part) for name, part in value.items()}
+            return {visible(name): _visible(part) for name, part in value.items()}
     return value

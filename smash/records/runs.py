@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from typing import Any, Final, Literal
 
 import msgspec
 
+from smash.problem.files.instances import instance_document
 from smash.problem.files.plans import PLAN_FORMAT_2, plan_document, plan_from_document
+from smash.problem.model import Instance
 from smash.problem.plan import Plan, Status
 from smash.records.outcomes import OutcomeName
-from smash.records.record import Commit, Machine, Record
+from smash.records.record import Amount, Commit, Count, Machine, Record, Seconds
 
 RUN_FORMAT: Final = "smash-run/1"
 RunKind = Literal["anytime", "budget", "cutoff"]
@@ -41,31 +45,31 @@ class RunRecord(Record, kw_only=True, frozen=True):
     instance: str
     planner: str
     topple: bool
-    max_topple: int | None
+    max_topple: Count | None
     status: Status
-    cost: int | None
-    lower_bound: int | None
+    cost: Count | None
+    lower_bound: Count | None
     bound_origin: str | None
-    incumbents: list[tuple[float, int, str]]
-    actions: list[list[str | int]] | None
+    incumbents: list[tuple[Seconds, Count, str]]
+    actions: list[list[str | Count]] | None
     outcome: OutcomeName
     reason: str
     verdict: VerdictField | None
-    budget: float
-    budgets: list[float]
-    memory_limit_mib: int
+    budget: Seconds
+    budgets: list[Seconds]
+    memory_limit_mib: Count
     warm_start: str | None
-    horizon: int | None
-    threads: int
-    seed: int
-    blocks: int
-    stacks: int
-    buffers: int
+    horizon: Count | None
+    threads: Count
+    seed: Count
+    blocks: Count
+    stacks: Count
+    buffers: Count
     instance_hash: str
     instance_document: dict[str, Any]
-    wall_seconds: float | None
-    cpu_seconds: float | None
-    memory_mib: float | None
+    wall_seconds: Seconds | None
+    cpu_seconds: Seconds | None
+    memory_mib: Amount | None
     details: dict[str, Any]
     log: str
     started: str
@@ -91,6 +95,11 @@ class RunRecord(Record, kw_only=True, frozen=True):
         """
         fields = {name: getattr(self, name) for name in PLAN_FIELDS}
         return plan_from_document({"format": PLAN_FORMAT_2, **fields}, "record")
+
+
+def instance_hash(instance: Instance) -> str:
+    """Return a hash of the whole instance, its name included."""
+    return hashlib.sha256(json.dumps(instance_document(instance)).encode()).hexdigest()[:16]
 
 
 def plan_fields(plan: Plan) -> dict[str, Any]:

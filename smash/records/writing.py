@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable, Iterable
 from pathlib import Path
 from types import TracebackType
 from typing import Generic, Self
 
 from smash.problem.errors import MalformedFile
+from smash.problem.files.documents import replacing
 from smash.records.files import R, RecordFile
 from smash.records.locking import hold
-from smash.records.reading import Reading, read
+from smash.records.reading import read
 
 
 class Writer(Generic[R]):
@@ -20,21 +21,30 @@ class Writer(Generic[R]):
 
     Attributes:
         path: The file.
-        earlier: The records that were there when it was opened.
+        earlier: The records that were there when it was opened, each key once.
         finished: Keys of all records there.
-        set_aside: Whether the last line was damaged, as a kill leaves it; it lies in the `.damaged` file now.
+        redone: How many records were moved to the `.redone` file, to be done again.
+        set_aside: In words, each line that was damaged, or cut off by a kill; they lie in the `.damaged` file now.
+
+    Args:
+        directory: the results directory.
+        kind: which file.
+        again: the records that are to be done again, for which this is true; None: none of them.
 
     Raises:
         InUse: where another process has the directory.
-        MalformedFile: where the file is damaged elsewhere than in its last line, or cannot be read or written.
+        MalformedFile: where the file cannot be read or written.
     """
 
-    def __init__(self, directory: Path, kind: RecordFile[R]) -> None:
+    def __init__(self, directory: Path, kind: RecordFile[R], again: Callable[[R], bool] | None = None) -> None:
         self.path = kind.path(directory)
         self._lock = hold(directory)
+        self._again: Callable[[R], bool] = again or (lambda _: False)
+        self.redone = 0
         try:
-            reading = read(directory, kind) if self.path.is_file() else None
-            self.earlier: list[R] = [] if reading is None else self._repaired(reading, kind.aside(directory))
+            self.earlier: list[R]
+            self.set_aside: list[str]
+            self.earlier, self.set_aside = self._repaired(directory, kind) if self.path.is_file() else ([], [])
             self._file = open(self.path, "ab")  # noqa: SIM115 - open until `__exit__`
         except OSError as error:
             self._lock.close()
@@ -42,21 +52,26 @@ class Writer(Generic[R]):
         except MalformedFile:
             self._lock.close()
             raise
-        self.set_aside = reading is not None and len(self.earlier) < len(reading.lines) + len(reading.damaged)
         self.finished: set[Hashable] = {record.key for record in self.earlier}
 
-    def _repaired(self, reading: Reading[R], aside: Path) -> list[R]:
-        """Move a last line that is damaged, or lacks its end, out of the file; return the records that stay."""
-        reading.refuse_damage(but_last=True)
-        if reading.ended and not reading.damaged:
-            return reading.records
-        with open(self.path, "rb") as file:
-            file.seek(reading.begins)
-            last = file.read()
-        with open(aside, "ab") as kept:
-            kept.write(last.rstrip(b"\n") + b"\n")
-        os.truncate(self.path, reading.begins)
-        return reading.records if reading.damaged else reading.records[:-1]
+    def _repaired(self, directory: Path, kind: RecordFile[R]) -> tuple[list[R], list[str]]:
+        """Move lines that are damaged, or lack their end, out of the file; return the records that stay, and words."""
+        reading = read(directory, kind)
+        moved = {line.number: f"line {line.number}: {line.reason}" for line in reading.damaged}
+        texts = self.path.read_bytes().removesuffix(b"\n").split(b"\n")
+        if not reading.ended:
+            moved.setdefault(len(texts), f"line {len(texts)}: cut off at its end")
+        again = {line.number for line in reading.lines if line.number not in moved and self._again(line.record)}
+        if not moved and not again:
+            return reading.records, []
+        self.redone = len(again)
+        for target, numbers in ((kind.aside(directory), set(moved)), (kind.redone(directory), again)):
+            if numbers:
+                _add(target, [text for number, text in enumerate(texts, start=1) if number in numbers])
+        stay = [text for number, text in enumerate(texts, start=1) if number not in again.union(moved)]
+        with replacing(self.path) as whole:
+            _add(whole, stay)
+        return read(directory, kind).records, [f"{self.path}: {moved[number]}" for number in sorted(moved)]
 
     def __enter__(self) -> Self:
         return self
@@ -82,3 +97,11 @@ class Writer(Generic[R]):
         except OSError as error:
             raise MalformedFile(str(self.path), f"cannot be written: {error.strerror}") from None
         self.finished.add(record.key)
+
+
+def _add(file: Path, lines: Iterable[bytes]) -> None:
+    """Add lines to a file and have them on disk."""
+    with open(file, "ab") as kept:
+        kept.writelines(line + b"\n" for line in lines)
+        kept.flush()
+        os.fsync(kept.fileno())

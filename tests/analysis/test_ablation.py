@@ -11,7 +11,7 @@ from smash_analysis.tables.readings import cutoff_check, readings
 from smash_analysis.tables.runs import incumbents_table, runs_table
 
 from smash.problem.errors import MalformedFile
-from smash.records.reading import finished_runs
+from smash.records.believing import believed_runs
 from tests.analysis.made_up import record, write
 
 
@@ -99,14 +99,14 @@ def test_a_half_written_last_line_is_left_out(tmp_path):
     write(tmp_path, [record(0), record(1)])
     with open(tmp_path / "runs.jsonl", "a") as file:
         file.write('{"format": "smash-ru')
-    assert len(finished_runs(tmp_path)) == 2
+    assert len(believed_runs(tmp_path).records) == 2
 
 
 @pytest.mark.parametrize("content", ["", "{}\n{}\n", "[1]\n\n"])
 def test_a_file_without_records_is_refused(tmp_path, content):
     (tmp_path / "runs.jsonl").write_text(content)
     with pytest.raises(MalformedFile):
-        finished_runs(tmp_path)
+        believed_runs(tmp_path)
 
 
 def test_runs_and_incumbents_are_tidy_tables():

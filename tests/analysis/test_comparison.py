@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 from smash_analysis.charts.curves import best_known, coverage_curve, quality_curve
-from smash_analysis.comparison import compared, comparison_table, failure_table, make, optima, outcome_table
+from smash_analysis.comparison import compared, comparison_table, failure_table, make, outcome_table
+from smash_analysis.tables.believed import believed_of
 
 from tests.analysis.made_up import record, write
 
@@ -43,23 +44,18 @@ def test_gaps_are_to_proven_optima_only():
     assert math.isnan(gaps[2])
 
 
-@pytest.mark.parametrize(
-    ("other", "words"),
-    [
-        ({"trace": [(1.0, 9)], "status": "optimal", "lower_bound": 9}, "b proves 9"),
-        ({"trace": [(1.0, 9)]}, "a proves at least 10, b has 9"),
-        ({"trace": [], "status": "infeasible"}, "b proves it infeasible, a has a plan"),
-    ],
-)
-def test_contradictions_between_planners_are_said(other, words):
-    runs = [record(0, [(1.0, 10)], label="a", status="optimal", lower_bound=10), record(0, label="b", **other)]
-    _, wrong = optima(runs)
-    assert any(words in line for line in wrong)
-
-
-def test_planners_that_agree_contradict_nothing():
-    runs = [record(0, [(1.0, 10)], label=x, status="optimal", lower_bound=10) for x in "ab"]
-    assert optima(runs) == ({("h0", "topple"): 10}, [])
+def test_gaps_are_never_negative_where_a_planner_lies(tmp_path):
+    lie = record(0, [(1.0, 12)], label="liar", status="optimal", outcome="optimal")
+    truth = [
+        record(0, [(1.0, 10)], label="b"),
+        record(1, [(1.0, 9)], label="liar", status="optimal", outcome="optimal"),
+    ]
+    found = believed_of(write(tmp_path, [lie, *truth]))
+    runs = compared(found.records)
+    assert runs["gap"].isna().all()
+    assert not runs["proven"].any()
+    (line,) = map(str, found.contradictions)
+    assert line.endswith("liar says that no plan is cheaper than 12, b has a plan of 10")
 
 
 def test_every_failure_is_counted_with_its_reason():

@@ -14,6 +14,7 @@ def trial(falling, good, scene="default", seed=0):
     plain = {
         "format": "smash-topple-trial/1",
         "scene": scene,
+        "layout": scene,
         "stack": 0,
         "height": 2,
         "falling": falling,
@@ -25,7 +26,7 @@ def trial(falling, good, scene="default", seed=0):
 @pytest.fixture
 def results(tmp_path):
     records = [
-        {**record(name, variant, seconds), "scene": scene}
+        {**(row := record(name, variant, seconds)), "scene": scene, "key": f"{row['key']}/{scene}"}
         for scene, slower in ((None, 0.0), ("friction-0.40", 12.0))
         for name in ("a", "b")
         for variant, seconds in (("topple", 20.0 + slower), ("no-topple", 30.0))

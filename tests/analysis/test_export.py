@@ -13,7 +13,8 @@ from smash.cli import smash
 from smash.problem.errors import Unsupported
 from tests.analysis.made_up import record, write
 
-PLAN = [["topple", "s1", 2], ["pick", "b1", "table"], ["place", "b1", "s2"]]
+PLAN = [["topple", "s1", 9], ["pick", "a0", "table"], ["place", "a0", "s2"]]
+"""Costs 4: the way from the table region to s2 costs 1."""
 
 
 def export(tmp_path, *records):
@@ -23,7 +24,7 @@ def export(tmp_path, *records):
 
 @pytest.fixture
 def tables(tmp_path):
-    solved = record(0, [(0.1, 5), (0.2, 3)], actions=PLAN)
+    solved = record(0, [(0.1, 5), (0.2, 4)], actions=PLAN)
     ended = export(tmp_path, solved, record(1))
     assert ended.exit_code == 0, ended.output
     return tmp_path / "out"
@@ -39,7 +40,7 @@ def test_parquet_and_csv_hold_the_same(tables, name, rows):
 
 def test_a_run_is_one_flat_row(tables):
     runs = pd.read_parquet(tables / "runs.parquet")
-    assert runs["cost"].tolist() == [3, pd.NA]
+    assert runs["cost"].tolist() == [4, pd.NA]
     assert runs["commit_hash"].tolist() == ["c", "c"]
     assert runs["machine_cores"].tolist() == [2, 2]
     assert runs["load_after"].tolist() == [0.2, 0.2]
@@ -51,9 +52,9 @@ def test_a_step_names_block_location_and_height(tables):
     steps = pd.read_parquet(tables / "steps.parquet").astype(object)
     steps = steps.where(steps.notna(), None)
     assert steps[["action", "block", "location", "height"]].values.tolist() == [
-        ["topple", None, "s1", 2],
-        ["pick", "b1", "table", None],
-        ["place", "b1", "s2", None],
+        ["topple", None, "s1", 9],
+        ["pick", "a0", "table", None],
+        ["place", "a0", "s2", None],
     ]
 
 
@@ -99,8 +100,8 @@ def test_a_plain_field_of_a_later_version_is_a_column(tmp_path):
 
 
 def test_any_json_string_is_a_name(tmp_path):
-    assert export(tmp_path, record(0, instance='\ud800, "ü"\n', actions=PLAN, trace=[(0.1, 3)])).exit_code == 0
-    assert pd.read_csv(tmp_path / "out" / "runs.csv")["instance"].tolist() == ['\\ud800, "ü"\n']
+    assert export(tmp_path, record(0, instance='\ud800, "ü"\n', actions=PLAN, trace=[(0.1, 4)])).exit_code == 0
+    assert pd.read_csv(tmp_path / "out" / "runs.csv")["instance"].tolist() == ['\\ud800, "ü"\\n']
 
 
 def test_no_records_and_missing_packages_are_one_line(tmp_path, monkeypatch):

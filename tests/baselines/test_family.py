@@ -7,6 +7,7 @@ from click.testing import CliRunner
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from smash_baselines.encodings import DOMAINS, family_encoding
+from smash_baselines.engine import beyond_integers
 from smash_baselines.facts import named_blocks, trim_buffers
 from smash_baselines.parts.registry import PARTS
 from smash_baselines.planners import Aries, Enhsp, FdLama, FdLamaConditional, FdOpt, FdOptIpdb, SymkOpt
@@ -30,6 +31,7 @@ from smash.problem import (
     write_instance,
 )
 from smash.problem.blocksworld.sexpr import parse_expression
+from smash.problem.files.instances import instance_from_document
 from smash.problem.problem import Problem
 from tests.baselines.test_encodings import random_walk
 from tests.cheapest import cheapest_plan
@@ -278,3 +280,20 @@ def test_export_writes_what_is_left_without_an_action(tmp_path):
     assert "lift" not in domain
     assert "(:action carry" in domain
     assert json.loads(problem.splitlines()[0].split(": ", 1)[1])["carriers"] == {"c01": "tray"}
+
+
+@pytest.mark.parametrize(("metre", "fits"), [(1_000.0, True), (1_000_000.0, False)])
+def test_costs_whose_sums_pass_an_engine_s_integers_are_refused_before_it_starts(metre, fits):
+    places = {"s0": [-700.0, 0], "s1": [-700.0, 0], "g": [700.0, 0], "table": [0, 0]}
+    document = {
+        "format": "smash-instance/2",
+        "name": "far",
+        "blocks": ["a", "b"],
+        "stacks": ["s0", "s1", "g"],
+        "start": {"s0": ["a"], "s1": ["b"]},
+        "goal": {"kind": "stacks", "stacks": {"g": ["a", "b"]}},
+        "costs": {"travel": metre, "positions": places},
+    }
+    reason = beyond_integers(instance_from_document(document))
+    assert (reason is None) == fits
+    assert fits or "engines count to 2,147,483,647" in reason

@@ -117,13 +117,35 @@ def test_a_half_written_last_line_is_found_and_its_run_is_missing(check, sound):
 
 def test_a_damaged_line_in_the_middle_hides_none_after_it(check, sound):
     whole = [json.dumps(record) + "\n" for record in sound]
-    code, found = check([], last=whole[0] + "broken\n" + "".join(whole[1:]))
-    assert (code, found) == (3, ["damaged: line 2: no JSON, set it aside and start the sweep again"])
+    code, (found,) = check([], last=whole[0] + "broken\n" + "".join(whole[1:]))
+    assert code == 3
+    assert found.startswith("damaged: line 2: no JSON: ")
+    assert found.endswith("; start the sweep again: it is set aside, its run done")
+
+
+def test_contradictions_are_found_without_the_planners_that_were_run(check, sound):
+    sure = {"status": "optimal", "outcome": "optimal", "planner": "gone", "label": "gone", "key": "another"}
+    cost = sound[0]["cost"] + 2
+    top = sound[0]["actions"][-1]
+    wasted = [["pick", top[1], top[2]], top]
+    liar = sound[0] | sure | {"cost": cost, "incumbents": [[0.1, cost, "x"]]}
+    code, found = check([*sound, liar | {"actions": sound[0]["actions"] + wasted}])
+    assert code == 3
+    (said,) = [line for line in found if line.startswith("contradiction")]
+    assert f"gone says that no plan is cheaper than {cost}, greedy has a plan of {cost - 2}" in said
+
+
+def test_an_experiment_of_planners_that_are_not_here_is_read(tmp_path, sound):
+    (tmp_path / "experiment.toml").write_text(EXPERIMENT + '[[planners]]\nname = "gone"\n')
+    (tmp_path / "runs.jsonl").write_text("".join(json.dumps(record) + "\n" for record in sound))
+    ended = CliRunner().invoke(smash, ["records", "check", str(tmp_path)])
+    assert ended.exit_code == 3
+    assert all(line.startswith("missing: gone on multi-4") for line in ended.stderr.splitlines())
 
 
 def test_without_an_experiment_completeness_is_left_open(tmp_path, sound):
     (tmp_path / "runs.jsonl").write_text(json.dumps(sound[0]) + "\n")
-    answers = {check.question: check.answer for check in audit(tmp_path, "no file")}
+    answers = {check.question: check.answer for check in audit(tmp_path, lambda records: "no file")}
     assert answers["complete"] == "not known: no file"
     ended = CliRunner().invoke(smash, ["records", "check", str(tmp_path)])
     assert ended.exit_code == 0

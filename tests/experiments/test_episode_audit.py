@@ -19,7 +19,7 @@ SETTING = {
     **{"format": "smash-episode/1", "instance": "i0", "planner": "p", "topple": True, "max_topple": None},
     **{"scene": "default", "seed": 0, "replanning": False, "final": {"piles": {}, "table": []}},
 }
-RUN = made_up_run(0, [(0.1, 3)], actions=PLAN).document
+RUN = made_up_run(0, [(0.1, 4)], actions=PLAN).document
 
 
 def episode(success=True, failure=None):

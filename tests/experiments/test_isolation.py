@@ -12,12 +12,12 @@ from threading import Event
 import psutil
 import pytest
 
-from smash.experiments.isolation.caller import run_isolated
+from smash.experiments.isolation.caller import run_isolated, when
 from smash.experiments.isolation.job import Job
 from smash.planners.protocol import Settings
 from smash.problem import PlanOptions
 from smash.problem.errors import SmashError
-from smash.problem.files.instances import read_instance
+from smash.problem.files.instances import instance_from_document, read_instance
 from smash.problem.files.plans import plan_from_document, plan_text
 from smash.problem.problem import Problem
 from tests.experiments.troubled import SAID_ALL
@@ -35,6 +35,14 @@ def run(tower_file):
         return run_isolated(Job(planner, problem(tower_file, topple), Settings(), budget, memory), **more)
 
     return call
+
+
+@pytest.fixture
+def one_location():
+    """Two blocks whose order one location cannot change."""
+    start, goal = {"s": ["a", "b"]}, {"kind": "stacks", "stacks": {"s": ["b", "a"]}}
+    place = {"format": "smash-instance/1", "name": "one", "blocks": ["a", "b"], "stacks": ["s"], "buffers": []}
+    return instance_from_document({**place, "start": start, "goal": goal})
 
 
 def runs(process):
@@ -119,8 +127,28 @@ def test_a_crash_keeps_what_was_found_and_what_was_printed(run):
     assert "Segmentation fault" in report.log
 
 
-def test_infeasible_is_passed_on(run):
-    assert run("gives-up", topple=False).plan.status == "infeasible"
+def test_infeasible_is_checked_where_the_law_can_decide_it(run, one_location):
+    report = run("gives-up", topple=False)
+    assert (report.outcome, report.plan.status) == ("refused", "unknown")
+    assert "start and goal show that there is a plan" in report.reason
+    report = run_isolated(Job("gives-up", Problem(one_location, PlanOptions(topple=False)), Settings(), 60.0))
+    assert (report.outcome, report.plan.status, report.reason) == ("infeasible", "infeasible", "")
+
+
+@pytest.mark.parametrize(("said", "counts"), [(0.0, 3.0), (2.9, 2.9), (3.0, 3.0), (9.0, 3.0)])
+def test_a_plan_counts_from_when_its_line_arrived(said, counts):
+    assert when(said, arrived=3.0) == counts
+
+
+def test_an_optimal_plan_is_its_own_bound(run):
+    plan = run("is-sure").plan
+    assert (plan.status, plan.lower_bound, plan.bound_origin) == ("optimal", 3, "is-sure")
+
+
+def test_junk_on_the_pipe_names_the_planner(run):
+    report = run("babbles")
+    assert report.outcome == "crashed"
+    assert report.reason.startswith("planner 'babbles' wrote to the pipe on which its run speaks")
 
 
 def test_a_planner_that_prints_disturbs_nothing(run):

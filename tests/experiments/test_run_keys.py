@@ -1,6 +1,7 @@
 """The keys of runs, letter by letter: a sweep that was begun goes on, whatever the package has become since."""
 
-from smash.experiments.sweeps.experiment import experiment_runs, instance_hash, read_experiment
+from smash.experiments.sweeps.experiment import experiment_runs, read_experiment
+from smash.records.runs import instance_hash
 
 EXPERIMENT = """
 name = "pinned"

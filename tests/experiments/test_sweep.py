@@ -12,7 +12,6 @@ from contextlib import suppress
 import psutil
 import pytest
 
-from smash.problem import MalformedFile
 from smash.records.files import RUNS
 from smash.records.locking import InUse
 from smash.records.writing import Writer
@@ -157,10 +156,25 @@ def test_a_damaged_last_line_is_set_aside_and_its_run_done_again(experiment, tmp
     assert (out / "runs.damaged").read_bytes().strip() in whole
 
 
-def test_damage_elsewhere_is_refused_with_its_line(tmp_path):
-    (tmp_path / RUNS.name).write_text('{"half\n{"format": "smash-run/1", "key": "a"}\n')
-    with pytest.raises(MalformedFile, match=r"runs\.jsonl:1"):
-        Writer(tmp_path, RUNS)
+def test_damage_elsewhere_is_set_aside_with_its_line_and_its_run_done_again(experiment, tmp_path):
+    file, out = experiment(["bare"], count=2), tmp_path / "out"
+    sweep(file, out)
+    first, second = (out / RUNS.name).read_bytes().splitlines(keepends=True)
+    (out / RUNS.name).write_bytes(first.replace(b'"budget": 0.3', b'"budget": NaN') + second)
+    ended = sweep(file, out)
+    assert "runs.jsonl: line 1: no JSON: NaN is no number of JSON: damaged: set aside" in ended.stderr
+    assert len(records(out)) == 2
+
+
+def test_runs_that_ended_so_are_done_again_where_it_is_asked_for(experiment, tmp_path):
+    file, out = experiment(["bare", "raises"]), tmp_path / "out"
+    sweep(file, out)
+    before = records(out)
+    ended = sweep(file, out, "--redo", "crashed")
+    count = sum(record["outcome"] == "crashed" for record in before)
+    assert f"{count} recorded runs are done again" in ended.stderr
+    assert len((out / "runs.redone").read_text().splitlines()) == count > 0
+    assert sorted(record["key"] for record in records(out)) == sorted(record["key"] for record in before)
 
 
 def test_two_sweeps_on_one_directory_are_refused(experiment, tmp_path):

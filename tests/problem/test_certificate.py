@@ -17,14 +17,29 @@ from smash.planners.protocol import SolveOptions
 from smash.problem import (
     MalformedFile,
     OnGoal,
+    Pick,
+    Place,
     PlanOptions,
     PositionsGoal,
     StacksGoal,
+    Topple,
     make_instance,
     write_instance,
     write_plan,
 )
-from smash.problem.certificate import ONE, Cases, Certificate, Leaf, RefusedCertificate, certificate_text, proven_bound
+from smash.problem.certificate import (
+    ONE,
+    Cases,
+    Certificate,
+    Leaf,
+    RefusedCertificate,
+    certificate_text,
+    proven_bound,
+    why_not_certified,
+)
+from smash.problem.errors import Unsupported
+from smash.problem.files.instances import instance_from_document
+from smash.problem.plan import Plan
 from smash.problem.problem import Problem
 from tests.arrangements import wide
 from tests.oracle import optimal_cost
@@ -172,3 +187,54 @@ def test_the_commands_certify_and_verify_a_plan(tmp_path):
     worse = copy.copy(result.as_plan(instance, "precedence", PlanOptions()))
     write_plan(worse, files[1])
     assert "topple options" in str(run.invoke(verify_command, files).exception)
+
+
+def beyond(extra, **changes):
+    document = {
+        "format": "smash-instance/2",
+        "name": "beyond",
+        "blocks": ["a", "b", "c"],
+        "stacks": ["s", "g"],
+        "start": {"s": ["a", "b", "c"]},
+        "goal": {"kind": "stacks", "stacks": {"g": ["a", "b", "c"]}},
+    }
+    return instance_from_document(document | extra | changes)
+
+
+CARRIER = {"name": "t", "stations": ["x", "y"], "at": "x", "capacity": 2, "holds": ["c"]}
+
+
+@pytest.mark.parametrize(
+    ("extra", "words"),
+    [
+        ({"capacities": {"lift": 3}}, "plans may use lift"),
+        ({"carriers": [CARRIER | {"holds": []}]}, "plans may use carry"),
+        ({"costs": {"actions": {"topple": 2}}}, "its actions have costs"),
+        ({"carriers": [CARRIER | {"stations": ["x"]}], "start": {"s": ["a", "b"]}}, "blocks start on a carrier"),
+        ({"hand": "c", "start": {"s": ["a", "b"]}}, "a block starts in the hand"),
+    ],
+)
+def test_nothing_is_proven_where_the_argument_does_not_reach(tmp_path, extra, words):
+    instance = beyond(extra)
+    options = PlanOptions(without=("carry",)) if "start" in extra and "carriers" in extra else PlanOptions()
+    said = why_not_certified(instance, options)
+    assert said is not None
+    assert said.startswith(words)
+    proof = Certificate("smash-certificate/1", "beyond", True, None, 7, [["c"]], Leaf([(0, 999_999)]))
+    with pytest.raises(Unsupported, match=words):
+        proven_bound(instance, options, proof)
+
+
+def test_an_optimal_plan_without_a_bound_claims_its_cost(tmp_path):
+    instance = make_instance({"s": ["a", "b"], "g": []}, StacksGoal({"g": ("a", "b")}), name="two", buffers=1)
+    lifted = (Topple("s", 2), Pick("a", "s"), Place("a", "g"), Pick("b", "table"), Place("b", "g"))
+    wasted = (Pick("b", "s"), Place("b", "s"), *lifted)
+    weak = certificate_of(instance, PlanOptions())
+    files = [tmp_path / name for name in ("instance.json", "plan.json", "proof.json")]
+    write_instance(instance, files[0])
+    write_plan(Plan("two", "liar", PlanOptions(), "optimal", wasted), files[1])
+    files[2].write_text(certificate_text(weak))
+    ended = CliRunner().invoke(verify_command, list(map(str, files)))
+    assert ended.exit_code == 3
+    write_plan(Plan("two", "honest", PlanOptions(), "optimal", lifted), files[1])
+    assert CliRunner().invoke(verify_command, list(map(str, files))).exit_code == 0

@@ -1,10 +1,9 @@
-"""The one writer: on disk at once, none twice, one at a time; a kill's trace is set aside, other damage refused."""
+"""The one writer: on disk at once, none twice, one at a time; what is damaged is set aside."""
 
 import json
 
 import pytest
 
-from smash.problem.errors import MalformedFile
 from smash.records.files import RUNS, TRIALS
 from smash.records.locking import InUse
 from smash.records.reading import read
@@ -51,15 +50,15 @@ def test_a_last_line_that_lacks_a_field_is_no_record(tmp_path):
     assert json.loads(RUNS.aside(tmp_path).read_text()) == short
 
 
-def test_damage_elsewhere_is_refused_with_its_line_and_nothing_is_moved(tmp_path):
+def test_damage_anywhere_is_set_aside_and_named_and_the_rest_stays(tmp_path):
     write(tmp_path, [record(0)])
-    damaged = b"half\n" + RUNS.path(tmp_path).read_bytes() + b"half"
-    RUNS.path(tmp_path).write_bytes(damaged)
-    for _ in range(2):  # the first has let go of the directory
-        with pytest.raises(MalformedFile, match=r"runs\.jsonl:1: no JSON; set the line aside"):
-            Writer(tmp_path, RUNS)
-    assert RUNS.path(tmp_path).read_bytes() == damaged
-    assert not RUNS.aside(tmp_path).exists()
+    whole = RUNS.path(tmp_path).read_bytes()
+    RUNS.path(tmp_path).write_bytes(b"half\n" + whole + b"[]\n" + b"half")
+    with Writer(tmp_path, RUNS) as records:
+        assert [line.split(": ")[1] for line in records.set_aside] == ["line 1", "line 3", "line 4"]
+        assert records.earlier == [record(0)]
+    assert RUNS.path(tmp_path).read_bytes() == whole
+    assert RUNS.aside(tmp_path).read_bytes() == b"half\n[]\nhalf\n"
 
 
 def test_one_writer_at_a_time(tmp_path):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
+from smash_analysis.charts.panels import as_it_stands
 from smash_analysis.tables.cells import grid
 
 if TYPE_CHECKING:
@@ -42,13 +43,13 @@ def planner_figure(label: str, suite: str, cells: pd.DataFrame, matched: pd.Data
     figure = Figure(figsize=(3 * width + 0.3, 2 * height + 0.75))
     figure.set_layout_engine("constrained", w_pad=0.06, h_pad=0.08)
     axes = figure.subplots(2, 3)
-    figure.suptitle(f"{label} on {suite} ({_runs(cells)} a cell)", fontsize=11, fontweight="bold")
+    figure.suptitle(as_it_stands(f"{label} on {suite} ({_runs(cells)} a cell)"), fontsize=11, fontweight="bold")
 
     names = ("without topple", "with topple")
     percent = mpl.colors.Normalize(0, 100)
     for axis, part, name in zip(axes[0], (without, with_), names, strict=False):
         _heatmap(axis, whole(part, "success") * 100, percent, SUCCESS_COLOURS, _percent, empty="not run")
-        axis.set_title(f"Success [%], {name}")
+        axis.set_title(as_it_stands(f"Success [%], {name}"))
     gain = (whole(with_, "success") - whole(without, "success")) * 100
     reach = max(10.0, float(np.nanmax(np.abs(gain.to_numpy()), initial=0.0)))
     _heatmap(axes[0][2], gain, mpl.colors.Normalize(-reach, reach), GAIN_COLOURS, _gain, empty="not run")
@@ -58,7 +59,7 @@ def planner_figure(label: str, suite: str, cells: pd.DataFrame, matched: pd.Data
     scale = mpl.colors.Normalize(*((costs.min(), max(costs.max(), costs.min() + 1)) if len(costs) else (0, 1)))
     for axis, part, name in zip(axes[1], (without, with_), names, strict=False):
         _heatmap(axis, whole(part, "mean_cost"), scale, ACTION_COLOURS, lambda v: f"{v:.1f}", empty="no plan")
-        axis.set_title(f"Mean actions where solved, {name}")
+        axis.set_title(as_it_stands(f"Mean actions where solved, {name}"))
     ratios = matched["ratio_common"].dropna()
     scale = mpl.colors.Normalize(min(1.0, ratios.min()), max(2.0, ratios.max())) if len(ratios) else percent
     _heatmap(axes[1][2], whole(matched, "ratio_common"), scale, RATIO_COLOURS, lambda v: f"{v:.2f}", empty="no pair")

@@ -75,7 +75,7 @@ class Chart:
             axis.set_xlabel(self.across)
         lines = {line.get_label(): line for axis in axes.flat for line in axis.get_lines()}
         named = {name: line for name, line in lines.items() if not str(name).startswith("_")}
-        figure.legend(named.values(), named.keys(), loc="outside right upper", frameon=False)
+        figure.legend(named.values(), list(map(as_it_stands, named)), loc="outside right upper", frameon=False)
         return figure
 
     def panel_figure(self, panel: Panel) -> Figure:
@@ -99,6 +99,11 @@ def _blank(width: float, height: float, layout: Literal["constrained"] | None = 
 
 def _draw(axis: Axes, panel: Panel) -> None:
     panel.draw(axis)
-    axis.set_title(panel.title)
+    axis.set_title(as_it_stands(panel.title))
     axis.grid(color=GRID_COLOUR, linewidth=0.6)
     axis.spines[["top", "right"]].set_visible(False)
+
+
+def as_it_stands(text: str) -> str:
+    """Return a text as a picture shows it as it stands: no part of it is read as a formula."""
+    return text.replace("$", r"\$")

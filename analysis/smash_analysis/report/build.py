@@ -39,6 +39,10 @@ def section(source: Source) -> Section:
         headlines += landing_headlines(source.trials)
         blocks += landing_blocks(source.trials)
         stores["trials"] = trial_store(source.trials)
+    if source.notes:
+        blocks.insert(0, Words("left-out", "What does not count", source.notes))
+    if source.contradictions:
+        blocks.insert(0, Words("contradictions", "Contradictions between planners", source.contradictions))
     if source.problems:
         blocks.insert(0, Words("unread", "What could not be read", [str(problem) for problem in source.problems]))
     return Section(source.name, source.name, _lead(source), headlines, figures, blocks, appendix(source), stores)

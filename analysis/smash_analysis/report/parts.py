@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from smash_analysis.report.blocks import Block, ChartBlock, GridBlock, Listing, Section, TableBlock, Words
-from smash_analysis.tables.writing import latex, markdown
+from smash_analysis.tables.writing import latex, markdown, write_csv
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -76,7 +76,7 @@ def _table(frame: pd.DataFrame, title: str, stem: Path, section: str) -> list[Pa
     files = [stem.with_name(f"{stem.name}.{ending}") for ending in ("md", "tex", "csv")]
     files[0].write_text(markdown(frame), encoding="utf-8")
     files[1].write_text(latex(frame, title, f"tab:{section}-{stem.name}"), encoding="utf-8")
-    frame.to_csv(files[2], index=False)
+    write_csv(frame, files[2])
     return files
 
 

@@ -47,7 +47,7 @@ class Planning:
         at = {id(record): number for number, record in enumerate(self.records)}
         self.kept = [at[id(record)] for record in self.final]
         self.runs = compared(self.final)
-        self.proven, self.wrong = optima(self.final)
+        self.proven = optima(self.final)
         self.effects = topple_effects(pd.concat([proven_optima(self.runs), self.runs]), MOST_EFFECTS)
         self.sizes = len({record.blocks for record in self.records})
 
@@ -73,13 +73,10 @@ class Planning:
         ended = failures[failures["outcome"].isin(["crashed", "memory", "refused"])]["runs"].sum()
         if ended:
             lines.append(f"{ended} of {len(self.final)} runs crashed, hit the memory limit or were refused by the law.")
-        count = len(self.wrong)
-        lines.append(
-            f"{count} contradictions between planners: see below."
-            if count
-            else "No two planners contradict each other."
-        )
-        return lines
+        count = len(self.source.contradictions)
+        if not count:
+            return [*lines, "No two planners contradict each other."]
+        return [f"{count} contradictions: a planner with a false claim proves nothing on this page; see below.", *lines]
 
     def cells(self) -> pd.DataFrame:
         """Return the cells of the curves over blocks."""
@@ -224,8 +221,6 @@ class Planning:
             TableBlock("failures", "Failures and their reasons", failures, note, entries=behind, store="runs"),
             TableBlock("outcomes", "How the runs ended", outcome_table(self.runs), folded=True),
         ]
-        if self.wrong:
-            blocks.append(Words("contradictions", "Contradictions between planners", self.wrong))
         return blocks
 
     def _behind(self, row: dict[Any, Any]) -> list[int]:

@@ -10,9 +10,12 @@ from pathlib import Path
 import pandas as pd
 
 from smash.problem.errors import MalformedFile
+from smash.problem.words import visible
+from smash.records.believing import believed
 from smash.records.episodes import EpisodeRecord
 from smash.records.files import EPISODES, RUNS, TRIALS, R, RecordFile
-from smash.records.reading import NoRecords, finished
+from smash.records.reading import NoRecords, Reading, read
+from smash.records.record import shown
 from smash.records.runs import RunRecord
 from smash.records.trials import Trial
 
@@ -30,6 +33,8 @@ class Source:
         runs: Records of `runs.jsonl`; `episodes` and `trials` likewise.
         scaling: `scaling.csv`, where the records behind it were not kept.
         problems: Files that cannot be read.
+        contradictions: In words, what of the runs contradicts what.
+        notes: In words, what else of the records does not count.
     """
 
     name: str
@@ -39,6 +44,8 @@ class Source:
     trials: list[Trial] = field(default_factory=list)
     scaling: pd.DataFrame | None = None
     problems: list[MalformedFile] = field(default_factory=list)
+    contradictions: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
 
     @property
     def empty(self) -> bool:
@@ -90,7 +97,11 @@ def _directories(results: Path, out: Path) -> list[Path]:
 def _read(directory: Path, results: Path) -> Source:
     name = results.resolve().name if directory == results else directory.relative_to(results).as_posix()
     source = Source(name.encode(errors="backslashreplace").decode(), directory)
-    source.runs = _records(source, RUNS)
+    if (runs := _reading(source, RUNS)) is not None:
+        found = believed(runs.records)
+        source.runs = found.records
+        source.contradictions = [visible(str(contradiction)) for contradiction in found.contradictions]
+        source.notes += [visible(line) for line in found.rest()]
     source.episodes = _records(source, EPISODES)
     source.trials = _records(source, TRIALS)
     if not source.runs and (directory / SCALING).is_file():
@@ -99,15 +110,25 @@ def _read(directory: Path, results: Path) -> Source:
 
 
 def _records(source: Source, kind: RecordFile[R]) -> list[R]:
+    reading = _reading(source, kind)
+    return [] if reading is None else [shown(record) for record in reading.records]
+
+
+def _reading(source: Source, kind: RecordFile[R]) -> Reading[R] | None:
+    """Return what a file holds, and note what of it does not count; None where there is nothing in it."""
     if not kind.path(source.path).is_file():
-        return []
+        return None
     try:
-        return finished(source.path, kind)
-    except NoRecords:
-        return []
+        reading = read(source.path, kind)
     except MalformedFile as error:
         source.problems.append(error)
-        return []
+        return None
+    if not reading.lines:
+        for damaged in reading.damaged[:1]:
+            source.problems.append(MalformedFile(f"{reading.path}:{damaged.number}", damaged.reason))
+        return None
+    source.notes += [visible(line) for line in reading.notes()]
+    return reading
 
 
 def _scaling(file: Path, problems: list[MalformedFile]) -> pd.DataFrame | None:

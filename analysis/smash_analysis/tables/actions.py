@@ -25,8 +25,9 @@ ACTION_COLUMNS: Mapping[str, str] = {
 
 
 def named(action: Sequence[str | int]) -> dict[str, str | int | None]:
-    """Return the columns of an action; of a kind that another package has added only its name is known."""
-    kind, *values = action
-    fields = FIELDS.get(str(kind))
-    known = dict(zip(fields, values, strict=True)) if fields else {}
-    return {**dict.fromkeys(ACTION_COLUMNS), "action": kind, **known}
+    """Return the columns of an action; only the name is known of another package's, and of one that is malformed."""
+    kind, *values = action or ("",)
+    fields = FIELDS.get(str(kind), ())
+    fits = [type(value) for value in values] == [int if field == "height" else str for field in fields]
+    known = dict(zip(fields, values, strict=True)) if fits else {}
+    return {**dict.fromkeys(ACTION_COLUMNS), "action": str(kind), **known}

@@ -10,6 +10,9 @@ from smash.records.runs import RunRecord
 from smash_analysis.metrics import metric_columns
 from smash_analysis.tables.actions import ACTION_COLUMNS, named
 
+MOST = 2**53
+"""Largest number that every table holds exactly; of a field that is not known a larger one is shown as text."""
+
 
 def runs_table(records: Sequence[RunRecord]) -> pd.DataFrame:
     """Return one row a run; nested fields (versions, machine, details, actions) stay in the records.
@@ -34,7 +37,8 @@ def runs_table(records: Sequence[RunRecord]) -> pd.DataFrame:
 def _plain(record: RunRecord) -> dict[str, object]:
     """Return the fields of a record that fit into a cell."""
     fields = {name: getattr(record, name) for name in record.__struct_fields__} | record.further
-    return {name: value for name, value in fields.items() if value is None or isinstance(value, str | int | float)}
+    plain = {name: value for name, value in fields.items() if value is None or isinstance(value, str | int | float)}
+    return {name: str(value) if type(value) is int and abs(value) > MOST else value for name, value in plain.items()}
 
 
 def incumbents_table(records: Sequence[RunRecord]) -> pd.DataFrame:

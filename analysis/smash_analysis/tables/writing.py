@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from math import isnan
+from pathlib import Path
 
 import pandas as pd
 
@@ -72,6 +74,29 @@ def rate_cell(rate: Rate, trials: str) -> str:
     return f"{rate.mean:.2f} [{low:.2f}, {high:.2f}] of {rate.units} ({rate.trials} {trials})"
 
 
+_NUMBERS = re.compile(r"[-+]?[\d.][\d.,%±()\[\] –to-]*")
+"""What begins with a sign and is no formula."""
+
+
+def write_csv(table: pd.DataFrame, file: Path) -> None:
+    """Write a table as CSV; a text that a spreadsheet would take for a formula gets an apostrophe before it.
+
+    Raises:
+        OSError: where it cannot be written.
+    """
+    plain = table.copy()
+    for name in plain.columns:
+        if not pd.api.types.is_numeric_dtype(plain[name]) and not pd.api.types.is_datetime64_any_dtype(plain[name]):
+            plain[name] = plain[name].map(_no_formula)
+    plain.rename(columns=_no_formula).to_csv(file, index=False)
+
+
+def _no_formula(value: object) -> object:
+    if isinstance(value, str) and value[:1] in ("=", "+", "-", "@") and not _NUMBERS.fullmatch(value):
+        return f"'{value}"
+    return value
+
+
 def ablation_table(runs: pd.DataFrame) -> pd.DataFrame:
     """Return the table beside the heatmaps: per planner, suite, buffers and variant at the largest budget.
 
@@ -104,11 +129,16 @@ def markdown(table: pd.DataFrame) -> str:
     """Return a table as Markdown."""
 
     def line(cells: list[str]) -> str:
-        return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+        return "| " + " | ".join(_cell(cell) for cell in cells) + " |"
 
     head = [str(column) for column in table.columns]
     body = [[str(cell) for cell in row] for row in table.itertuples(index=False)]
     return "\n".join([line(head), line(["---"] * len(head)), *map(line, body)]) + "\n"
+
+
+def _cell(text: str) -> str:
+    """Return a text as a cell of Markdown shows it."""
+    return " ".join(text.split()).replace("\\", "\\\\").replace("|", "\\|").replace("<", "&lt;")
 
 
 LONG_TABLE = 40

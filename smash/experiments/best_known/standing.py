@@ -12,14 +12,14 @@ from pathlib import Path
 
 import msgspec
 
-from smash.experiments.sweeps.experiment import instance_hash, variant_options
 from smash.problem.errors import MalformedFile
 from smash.problem.files.plans import read_plan
 from smash.problem.model import Action, Instance, PlanOptions
 from smash.problem.rules import Law
 from smash.problem.sets.open_instances import FAMILIES
 from smash.problem.sets.suites import read_suite
-from smash.records.runs import RunRecord
+from smash.records.runs import RunRecord, instance_hash
+from smash.records.variants import variant_options
 
 PLANS = "plans"
 """The directory of the plans, beside the list."""
@@ -90,15 +90,6 @@ def options_of(variant: str) -> PlanOptions:
     return options
 
 
-def allows(wide: PlanOptions, narrow: PlanOptions) -> bool:
-    """Return whether every plan under `narrow` is one under `wide`, so that a bound of `wide` holds for `narrow`."""
-    if not narrow.topple:
-        return True
-    if not wide.topple:
-        return False
-    return wide.max_topple is None or (narrow.max_topple is not None and narrow.max_topple <= wide.max_topple)
-
-
 @dataclass(slots=True)
 class BestKnown:
     """The list: entries by (instance, variant), and the plans that were added since it was read."""
@@ -140,7 +131,7 @@ class BestKnown:
         improved = []
         for variant in self.variants(instance):
             entry = self.entries[instance, variant]
-            if allows(options, options_of(variant)) and bound > (entry.lower_bound or -1):
+            if options.includes(options_of(variant)) and bound > (entry.lower_bound or -1):
                 improved.append(entry)
                 self.entries[instance, variant] = msgspec.structs.replace(entry, lower_bound=bound, bound=found)
         return improved

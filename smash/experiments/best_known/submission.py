@@ -8,7 +8,6 @@ from smash.experiments.best_known.standing import (
     BestKnown,
     Entry,
     Found,
-    allows,
     open_instances,
     options_of,
     variant_name,
@@ -97,7 +96,7 @@ def _allowed(entry: Entry, plan: Plan) -> bool:
 
 
 def _tightens(entry: Entry, plan: Plan, bound: int | None) -> bool:
-    return bound is not None and allows(plan.options, options_of(entry.variant)) and bound > (entry.lower_bound or -1)
+    return bound is not None and plan.options.includes(options_of(entry.variant)) and bound > (entry.lower_bound or -1)
 
 
 def _cost_words(entry: Entry, plan: Plan) -> str:

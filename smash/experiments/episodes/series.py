@@ -23,6 +23,7 @@ from smash.experiments.episodes.worker import Crew, EpisodeLost
 from smash.problem.errors import SmashError
 from smash.problem.files.instances import instance_from_document
 from smash.problem.model import Instance, PositionsGoal
+from smash.records.believing import judge
 from smash.records.episodes import EPISODE_RUN_FORMAT, Episode, EpisodeRecord
 from smash.records.files import RUNS
 from smash.records.reading import read
@@ -65,9 +66,8 @@ def episode_runs(
         SmashError: where nobody is labelled so.
     """
     reading = read(results, RUNS)
-    reading.refuse_damage()
-    plans = [run for run in reading.records if run.actions is not None]
-    plans = [run for run in plans if run.outcome != "refused" and run.kind != "cutoff"]
+    judged = [run.record for run in judge(reading.records) if run.counts]
+    plans = [run for run in judged if run.actions is not None and run.kind != "cutoff"]
     known = {run.label for run in plans}
     for label in labels:
         if label not in known:

@@ -22,8 +22,11 @@ from smash.problem.files.plans import action_from_list
 from smash.problem.model import Action
 from smash.problem.plan import Incumbent, Plan, Status
 from smash.problem.rules import Verdict
+from smash.records.claims import claimed_infeasible
 from smash.records.outcomes import OutcomeName
 
+LATENCY = 0.25
+"""Seconds that a line may take on its way: a plan that is said to be older than that counts from its arrival."""
 _PATIENCE = 20.0
 """Seconds beyond all limits after which a guardian that says nothing is given up."""
 
@@ -43,7 +46,8 @@ def run_isolated(
     heard = _Heard(job, on_incumbent)
     with guardian_of(job, may_fork=for_this) as guardian:
         for line in _lines(guardian, job, stop):
-            heard.take(json.loads(line))
+            if not heard.hear(line):
+                break
     return heard.report(interrupted=stop is not None and stop.is_set())
 
 
@@ -66,6 +70,11 @@ def _lines(guardian: Guardian, job: Job, stop: Event | None) -> Iterator[bytes]:
             yield from lines
 
 
+def when(said: float, arrived: float) -> float:
+    """Return when a plan was found: as the planner says, within what its line's arrival bears out [s]."""
+    return said if arrived - LATENCY <= said <= arrived else arrived
+
+
 class _Heard:
     """Puts the lines of a run together, judging each plan."""
 
@@ -82,17 +91,29 @@ class _Heard:
         self._failure: Mapping[str, Any] | None = None
         self._ended: Mapping[str, Any] | None = None
 
-    def take(self, message: Mapping[str, Any]) -> None:
-        """Take one line."""
+    def hear(self, line: bytes) -> bool:
+        """Take one line of a run; False where it is none, after which nothing is believed any more."""
+        try:
+            message = json.loads(line)
+            self._take(message)
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+            words = f"planner {self._job.planner!r} wrote to the pipe on which its run speaks: {line[:60]!r}"
+            self._failure = {"outcome": "crashed", "reason": words}
+            return False
+        return True
+
+    def _take(self, message: Mapping[str, Any]) -> None:
+        arrived = message["at"]
         match message["kind"]:
             case "incumbent":
-                self._plan(message["actions"], message["cost"], message["seconds"], self._job.planner)
+                seconds = when(message["seconds"], arrived)
+                self._plan(message["actions"], message["cost"], seconds, self._job.planner)
             case "bound":
                 if message["bound"] > self._proof.get("lower_bound", -1):
                     self._proof = {"lower_bound": message["bound"], "bound_origin": message["origin"]}
             case "result":
                 self._answer = message
-                self._take_answer(message)
+                self._take_answer(message, arrived)
             case "failed":
                 self._failure = message
             case "ended":
@@ -125,8 +146,8 @@ class _Heard:
             options=self._job.options,
             status=status,
             actions=self._best,
-            lower_bound=proof.get("lower_bound"),
-            bound_origin=proof.get("bound_origin"),
+            lower_bound=self._cost if status == "optimal" else proof.get("lower_bound"),
+            bound_origin=proof.get("bound_origin") or (self._job.planner if status == "optimal" else None),
             incumbents=tuple(self._trace),
             stated_cost=self._cost,
             details=answer.get("details", {}),
@@ -142,7 +163,7 @@ class _Heard:
             log=ended.get("log", ""),
         )
 
-    def _take_answer(self, answer: Mapping[str, Any]) -> None:
+    def _take_answer(self, answer: Mapping[str, Any], arrived: float) -> None:
         origins = {cost: origin for _, cost, origin in answer["incumbents"]}
         self._trace = [entry._replace(origin=origins.get(entry.cost, entry.origin)) for entry in self._trace]
         actions, status, bound = answer["actions"], answer["status"], answer["lower_bound"]
@@ -150,12 +171,12 @@ class _Heard:
             return self._refuse(f"status {status} {'without' if actions is None else 'with'} a plan")
         if actions is not None:
             stated = answer["cost"]
-            times = [at for at, cost, _ in answer["incumbents"] if cost == stated]
-            at = min([answer["seconds"], *(time for time in times if time >= 0)])
-            self._plan(actions, stated, at, origins.get(stated, self._job.planner))
+            self._plan(actions, stated, when(answer["seconds"], arrived), origins.get(stated, self._job.planner))
         best = self._cost
         if status == "infeasible" and best is not None:
             return self._refuse("status infeasible, yet it had reported a legal plan")
+        if status == "infeasible" and claimed_infeasible(self._job.problem) is False:
+            return self._refuse("status infeasible, yet start and goal show that there is a plan")
         if best is not None and bound is not None and bound > best:
             return self._refuse(f"lower bound {bound}, yet there is a legal plan of {best}")
         if status == "optimal" and actions is not None and (answer["cost"] != best or bound not in (None, best)):
@@ -192,6 +213,8 @@ class _Heard:
             return "refused", str(self._refusal)
         if self._answer is not None:
             status: Status = self._answer["status"]
+            if status == "infeasible" and claimed_infeasible(self._job.problem) is None:
+                return status, f"a claim of planner {self._job.planner!r}: nothing here decides it"
             return ("budget-spent" if status == "unknown" else status), ""
         if interrupted:
             return "interrupted", "stopped from outside"

@@ -110,6 +110,8 @@ class _Watch:
                 pause = max(0.0, min(self.deadline, next_look) - monotonic())
                 ready = {key.fd for key, _ in selector.select(pause)}
                 if sys.stdin.fileno() in ready and not os.read(sys.stdin.fileno(), 4096):
+                    while self._pass_on():  # what it had said before it was stopped counts
+                        pass
                     return
                 if self.pipe in ready and not self._pass_on():
                     selector.unregister(self.pipe)
@@ -157,8 +159,13 @@ class _Watch:
                 self.started = monotonic()
                 self.deadline = self.started + self.job.budget + grace(self.job.budget)
             self.answered = self.answered or b'"result"' in kind or b'"failed"' in kind
-            _say(line)
+            _say(self._stamped(line))
         return bool(chunk)
+
+    def _stamped(self, line: bytes) -> bytes:
+        """Return a line of the planner with the time of its arrival, in seconds from the start of its clock."""
+        at = 0.0 if self.started is None else monotonic() - self.started
+        return b'{"at": %.6f, ' % at + line[1:] if line.startswith(b"{") else line
 
     def _look_at_memory(self) -> float:
         """Return the resident set of the planner's tree [MiB], and keep its peak."""
@@ -213,6 +220,7 @@ class _Watch:
         lines = self.said.read().decode(errors="replace").splitlines()[-SAID_LINES:]
         message: dict[str, Any] = {
             "kind": "ended",
+            "at": wall or 0.0,
             "outcome": outcome,
             "reason": reason,
             "wall_seconds": wall,

@@ -6,14 +6,13 @@ Nothing is repaired here: a sweep that is started again does what is missing.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
-from smash.experiments.sweeps.experiment import Run, instance_hash
-from smash.problem.errors import SmashError
-from smash.problem.files.instances import instance_from_document
-from smash.problem.plan import check_plan
+from smash.experiments.sweeps.certified import certified
+from smash.experiments.sweeps.experiment import Run
+from smash.records.believing import Judged, believe, judge
 from smash.records.episodes import EpisodeRecord
 from smash.records.files import RUNS, RecordFile
 from smash.records.reading import NO_JSON, Damaged, Line, Reading, read
@@ -35,24 +34,26 @@ class Check(NamedTuple):
     findings: Sequence[str] = ()
 
 
-def audit(results: Path, planned: Sequence[Run] | str) -> list[Check]:
+def audit(results: Path, planned: Callable[[Sequence[RunRecord]], Sequence[Run] | str]) -> list[Check]:
     """Return what was asked of the records in `results/runs.jsonl`, and the answers.
 
     Args:
         results: the directory that a sweep wrote.
-        planned: the runs of its experiment, or in words why they are not known.
+        planned: from its records to the runs of its experiment, or in words why they are not known.
 
     Raises:
         MalformedFile: where there is no file to be read.
     """
     reading = read(results, RUNS)
     lines = reading.lines
+    judged = judge(line.record for line in lines)
     return [
         whole_lines(reading, results, RUNS),
-        *_against_plan(lines, planned),
+        *_against_plan(lines, planned(reading.records)),
         *sound(lines),
         _outcomes(lines),
-        _plans(lines),
+        _plans(judged, [line.number for line in lines]),
+        *_claims(results, judged),
     ]
 
 
@@ -71,9 +72,8 @@ def whole_lines(reading: Reading[Swept], results: Path, kind: RecordFile[Swept])
 
 
 def _remedy(line: Damaged) -> str:
-    if line.reason != NO_JSON:
-        return ""
-    return ", as a kill leaves it; start the sweep again" if line.last else ", set it aside and start the sweep again"
+    kill = ", as a kill leaves it" if line.last and line.reason.startswith(NO_JSON) else ""
+    return f"{kill}; start the sweep again: it is set aside, its run done"
 
 
 def _against_plan(lines: Sequence[Line[RunRecord]], planned: Sequence[Run] | str) -> Iterator[Check]:
@@ -100,11 +100,14 @@ def _recorded_setting(record: RunRecord) -> str:
 
 def told(line: Line[Swept]) -> str:
     """Return a line in words: its number, and what the record is of."""
-    record = line.record
+    return _told(line.record, line.number)
+
+
+def _told(record: RunRecord | EpisodeRecord, number: int) -> str:
     setting = f"{record.label} on {record.suite}/{record.instance}, {record.variant}"
     if isinstance(record, EpisodeRecord):
-        return f"line {line.number} ({setting}, {record.policy}, seed {record.seed})"
-    return f"line {line.number} ({setting}, {record.buffers} buffers)"
+        return f"line {number} ({setting}, {record.policy}, seed {record.seed})"
+    return f"line {number} ({setting}, {record.buffers} buffers)"
 
 
 def _twice(lines: Sequence[Line[Swept]]) -> Check:
@@ -154,38 +157,28 @@ def _outcomes(lines: Sequence[Line[RunRecord]]) -> Check:
     return Check("every outcome explained", ", ".join(f"{n} {end}" for end, n in ends.most_common()) or "none", words)
 
 
-def _plans(lines: Sequence[Line[RunRecord]]) -> Check:
-    """Judge every recorded plan anew, and name those that the law refused when they were made."""
-    words = list(_refusals(lines))
-    count = sum(line.record.actions is not None for line in lines)
+def _plans(judged: Sequence[Judged], numbers: Sequence[int]) -> Check:
+    """Name the plans that the law refused when they were made, and those that it refuses now."""
+    words = []
+    for run, number in zip(judged, numbers, strict=True):
+        record, verdict = run.record, run.record.verdict
+        if record.outcome == "refused" or (verdict is not None and not verdict.accepted):
+            words.append(f"refused: {_told(record, number)}: {record.reason or (verdict and verdict.reason)}")
+        elif run.refusal:
+            words.append(f"refused now: {_told(record, number)}: {run.refusal}")
+    count = sum(run.record.actions is not None for run in judged)
     return Check("the law accepts every plan", f"{count} plans checked again", words)
 
 
-def _refusals(lines: Sequence[Line[RunRecord]]) -> Iterator[str]:
-    for line in lines:
-        record, verdict = line.record, line.record.verdict
-        if record.outcome == "refused" or (verdict is not None and not verdict.accepted):
-            yield f"refused: {told(line)}: {record.reason or (verdict and verdict.reason)}"
-            continue
-        try:
-            problem = _shortcoming(record)
-        except SmashError as error:
-            problem = str(error)
-        if problem:
-            yield f"refused now: {told(line)}: {problem}"
-
-
-def _shortcoming(record: RunRecord) -> str:
-    """Return what is wrong with a record's instance or plan; empty where nothing is.
-
-    Raises:
-        SmashError: where either is malformed.
-    """
-    instance = instance_from_document(record.instance_document)
-    if instance_hash(instance) != record.instance_hash:
-        return "its instance does not fit its hash"
-    plan = record.plan
-    if plan.actions is None:
-        return ""
-    verdict = check_plan(instance, plan)
-    return "" if verdict.accepted else str(verdict)
+def _claims(results: Path, judged: Sequence[Judged]) -> Iterator[Check]:
+    """Hold what is claimed of all plans against the plans that there are, and against start and goal."""
+    proofs, unproven = certified(results, [run.problem for run in judged if run.counts and run.problem is not None])
+    found = believe(judged, proofs)
+    words = [f"contradiction: {contradiction}" for contradiction in found.contradictions]
+    claims = sum(run.record.status in ("optimal", "infeasible") for run in judged)
+    yield Check("no claim contradicted", f"{claims} proofs of optimality or that there is no plan", words)
+    if found.unproven:
+        first = "; ".join(found.unproven[:3])
+        yield Check("that there is no plan", f"not known: {len(found.unproven)} claims that nothing decides: {first}")
+    if proofs or unproven:
+        yield Check("every certificate proves its bound", f"{len(proofs)} certificates checked", unproven)

@@ -10,6 +10,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from smash.experiments.sweeps.experiment import Run
+from smash.problem.words import visible
 from smash.records.runs import RunRecord
 
 
@@ -60,9 +61,9 @@ class Progress:
             self.outcomes[record.outcome] += 1
         if self._bar is None:
             cost = "no plan" if record.cost is None else f"cost {record.cost}"
-            name = f"{run.suite}/{_one_line(run.job.instance.name)}"
+            name = f"{run.suite}/{visible(run.job.instance.name)}"
             where = f"{name} B={record.buffers} {run.variant} {run.job.budget:g} s"
-            words = f"[{self._done}/{self._total}] {run.label}: {where}: {record.outcome}, {cost}"
+            words = f"[{self._done}/{self._total}] {visible(run.label)}: {where}: {record.outcome}, {cost}"
             print(f"{words} ({self._words()})", file=sys.stderr)
         self._show()
 
@@ -84,8 +85,3 @@ def span(seconds: float) -> str:
     if seconds < 100:
         return f"{seconds:.0f} s"
     return f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.1f} h"
-
-
-def _one_line(name: str) -> str:
-    """Return a name without line breaks and control characters, for a line of progress."""
-    return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in name)

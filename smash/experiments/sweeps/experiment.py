@@ -22,18 +22,14 @@ from smash_baselines.engines.command import check_command, program_missing
 from smash.experiments.isolation.job import DEFAULT_MEMORY, Job
 from smash.planners.protocol import HIGHS, MOST_THREADS, SOLVERS, Settings, SolveOptions
 from smash.planners.registry import COMMAND, get_planner, why_unknown
-from smash.problem.actions.registry import FAMILY
 from smash.problem.buffers import with_buffers
 from smash.problem.errors import MalformedFile, SmashError, Unsupported
 from smash.problem.files.documents import convert, parse_toml, read_bytes
-from smash.problem.files.instances import instance_document
-from smash.problem.model import Instance, PlanOptions
+from smash.problem.model import Instance
 from smash.problem.problem import Problem
 from smash.problem.sets.suites import read_suite, suite_names
-from smash.records.runs import RunKind
-
-FURTHER = tuple(name for name in FAMILY if name != "topple")
-"""Aggregating actions that a variant can leave out by `-no-NAME`."""
+from smash.records.runs import RunKind, instance_hash
+from smash.records.variants import FURTHER, variant_options
 
 INSTANCES = "instances"
 SETS = "sets.json"
@@ -117,20 +113,29 @@ class Run:
     job: Job
 
 
-def read_experiment(path: str | os.PathLike[str]) -> Experiment:
+def read_experiment(path: str | os.PathLike[str], *, to_run: bool = True) -> Experiment:
     """Read an experiment file; suites that are directories are found beside it.
+
+    Args:
+        path: of the file.
+        to_run: whether its planners must be there; what was run elsewhere can be looked at without them.
 
     Raises:
         MalformedFile: with one line that says where and what is allowed.
     """
     where = os.fspath(path)
     experiment = cast(Experiment, convert(parse_toml(read_bytes(path), where), Experiment, where))
-    check_experiment(experiment, where)
+    check_experiment(experiment, where, to_run=to_run)
     return experiment
 
 
-def check_experiment(experiment: Experiment, where: str = "experiment") -> None:
+def check_experiment(experiment: Experiment, where: str = "experiment", *, to_run: bool = True) -> None:
     """Refuse settings that cannot be run.
+
+    Args:
+        experiment: the settings.
+        where: what is named where they are refused.
+        to_run: whether its planners must be there.
 
     Raises:
         MalformedFile: with one line that says where and what is allowed.
@@ -151,7 +156,7 @@ def check_experiment(experiment: Experiment, where: str = "experiment") -> None:
     for index, entry in enumerate(experiment.planners):
         part = f"planners[{index}]"
         for name in filter(None, (entry.planner, entry.warm_start)):
-            unknown = why_unknown(name)
+            unknown = why_unknown(name) if to_run else None
             expect(unknown is None, part, unknown or "")
         _check_command(expect, part, entry)
         few = 1 <= entry.threads <= MOST_THREADS
@@ -200,30 +205,22 @@ def _expect_list(expect: Expect, part: str, values: list[T] | None, fits: Callab
         expect(values.count(value) == 1, part, f"{value!r} stands twice")
 
 
-def variant_options(variant: str) -> PlanOptions | None:
-    """Return what a variant's name allows a plan to do, or None where it is no variant."""
-    parts = re.fullmatch(
-        rf"(topple|no-topple|max-topple-([1-9][0-9]{{0,5}}))((?:-no-(?:{'|'.join(FURTHER)}))*)", variant
-    )
-    if parts is None:
-        return None
-    without = tuple(parts[3].split("-no-")[1:])
-    return PlanOptions(parts[1] != "no-topple", int(parts[2]) if parts[2] else None, without=without)
-
-
-def experiment_runs(experiment: Experiment, base: Path = Path()) -> list[Run]:
+def experiment_runs(
+    experiment: Experiment, base: Path = Path(), dependent: Callable[[str], bool] | None = None
+) -> list[Run]:
     """Return every run of a checked experiment, instance by instance, so that a part of them is a fair sample.
 
     Args:
         experiment: the experiment.
         base: where suites that are directories are looked for.
+        dependent: whether a planner is run at each budget by itself; None asks the planner.
 
     Raises:
         MalformedFile: where a suite or an instance is refused, a run stands twice.
     """
     runs: dict[str, tuple[int, Run]] = {}
     for entry in experiment.planners:
-        planned = list(_entry_runs(experiment, entry, base))
+        planned = list(_entry_runs(experiment, entry, base, dependent or budget_dependent))
         sample = experiment.cutoff_sample if entry.cutoff_sample is None else entry.cutoff_sample
         anytime = sorted((run.key, index, run) for index, run in planned if run.kind == "anytime")
         planned += [(index, cut) for _, index, run in anytime[:sample] for cut in _cutoffs(run)]
@@ -235,10 +232,12 @@ def experiment_runs(experiment: Experiment, base: Path = Path()) -> list[Run]:
     return [run for _, run in sorted(runs.values(), key=lambda pair: pair[0])]
 
 
-def _entry_runs(experiment: Experiment, entry: PlannerEntry, base: Path) -> Iterator[tuple[int, Run]]:
+def _entry_runs(
+    experiment: Experiment, entry: PlannerEntry, base: Path, dependent: Callable[[str], bool]
+) -> Iterator[tuple[int, Run]]:
     """Yield (index of the instance in its suite, run) over the grid of one planner."""
     budgets = sorted(entry.budgets or experiment.budgets)
-    kind: RunKind = "budget" if budget_dependent(entry.planner) else "anytime"
+    kind: RunKind = "budget" if dependent(entry.planner) else "anytime"
     few = entry.instances or experiment.instances
     counts: list[int | None] = list(entry.buffers or experiment.buffers or []) or [None]
     for suite in entry.suites or experiment.suites:
@@ -281,11 +280,6 @@ def _key(label: str, suite: str, kind: RunKind, job: Job) -> str:
     return hashlib.sha256(json.dumps([*meant, instance_hash(job.instance)]).encode()).hexdigest()[:20]
 
 
-def instance_hash(instance: Instance) -> str:
-    """Return a hash of the whole instance, its name included."""
-    return hashlib.sha256(json.dumps(instance_document(instance)).encode()).hexdigest()[:16]
-
-
 def not_installed(experiment: Experiment) -> dict[tuple[str, str | None], str]:
     """Return which of the experiment's planners and programs cannot run here, and why."""
     from smash.planners.milp.solvers import require_solver
@@ -301,7 +295,7 @@ def not_installed(experiment: Experiment) -> dict[tuple[str, str | None], str]:
                 lacking[planner] = f"{entry.name!r} is not installed: {missing}"
         except Unsupported as error:
             lacking[planner] = str(error)
-        except Exception:  # a planner that is broken, not missing: its runs say so
+        except (Exception, SystemExit):  # a planner that is broken, not missing: its runs say so
             continue
     return lacking
 
@@ -310,7 +304,7 @@ def budget_dependent(planner: str) -> bool:
     """Whether a planner must be run at each budget by itself; one that cannot be loaded says so in its runs."""
     try:
         loaded = get_planner(planner)
-    except Exception:
+    except (Exception, SystemExit):
         return False
     return bool(getattr(loaded, "budget_dependent", not getattr(loaded, "anytime", False)))
 

@@ -16,7 +16,7 @@ from typing import Any
 import msgspec
 
 from smash.experiments.sweeps.experiment import INSTANCES, SETS, Experiment, set_directory
-from smash.problem.files.documents import write_text
+from smash.problem.files.documents import read_bytes, replacing, write_text
 from smash.problem.sets.suites import suite_files, suite_names
 
 EXPERIMENT = "experiment.toml"
@@ -35,7 +35,7 @@ def keep(experiment: Experiment, base: Path, out: Path, file: Path | None = None
     if file is None:
         write_text(target, experiment_text(experiment))
     elif file.resolve() != target.resolve():
-        shutil.copyfile(file, target)
+        _copy_file(file, target)
     folders = _keep_sets(suites(experiment), base, out / INSTANCES)
     if folders:
         write_text(out / INSTANCES / SETS, json.dumps(folders, indent=1) + "\n")
@@ -68,7 +68,18 @@ def _copy(source: Path, target: Path) -> None:
     shutil.rmtree(target, ignore_errors=True)
     target.mkdir(parents=True)
     for file in files:
-        shutil.copyfile(file, target / file.name)
+        _copy_file(file, target / file.name)
+
+
+def _copy_file(source: Path, target: Path) -> None:
+    """Copy a file whole or not at all.
+
+    Raises:
+        MalformedFile: where it cannot be written (a full disk).
+    """
+    content = read_bytes(source)
+    with replacing(target) as temporary:
+        temporary.write_bytes(content)
 
 
 def experiment_text(experiment: Experiment) -> str:

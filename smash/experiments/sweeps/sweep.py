@@ -18,10 +18,10 @@ from typing import Protocol
 from smash.experiments.environment import commit, load, machine, versions
 from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import Report
-from smash.experiments.sweeps.experiment import Run, instance_hash
+from smash.experiments.sweeps.experiment import Run
 from smash.problem.errors import Interrupted, SmashError
 from smash.problem.files.instances import instance_document
-from smash.records.runs import RUN_FORMAT, RunRecord, VerdictField, plan_fields
+from smash.records.runs import RUN_FORMAT, RunRecord, VerdictField, instance_hash, plan_fields
 from smash.records.writing import Writer
 
 _Future = Future[RunRecord | None]

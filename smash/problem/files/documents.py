@@ -133,6 +133,10 @@ def convert(document: Any, kind: Any, where: str) -> Any:
     """
     try:
         return msgspec.convert(document, kind)
+    except UnicodeEncodeError:
+        raise MalformedFile(where, "a key is no Unicode text (half of a surrogate pair)") from None
+    except RecursionError:
+        raise MalformedFile(where, "nested too deeply") from None
     except msgspec.ValidationError as error:
         message = str(error).replace("`$.", "`").removeprefix("Object contains ")
         message = message.replace("Object missing", "missing")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from threading import Event, Thread
 from time import perf_counter
 from typing import Any
 
@@ -12,6 +13,10 @@ import numpy as np
 from smash.planners.milp.arrays import Floats, Milp, MilpResult, MilpStatus, OnSolution
 from smash.problem.errors import MalformedFile
 
+LARGE = 100_000
+"""Nonzeros from which on HiGHS may overlook its time limit for long."""
+LATE = 0.1
+"""Seconds that it has to come to its end."""
 FEASIBLE_POINT = 2
 """`primal_solution_status` of a result that holds a feasible point, whatever ended the solve."""
 
@@ -43,7 +48,7 @@ def solve(
         cutoff: solutions that are not below it are of no interest.
         options: further options of HiGHS by name.
     """
-    began = perf_counter()
+    began, over = perf_counter(), Event()
     solver = _loaded(model)
     settings = {
         "time_limit": max(0.0, time_limit - (perf_counter() - began)),
@@ -58,25 +63,62 @@ def solve(
         solver.setOptionValue(name, value)
     if start is not None:
         _set_start(solver, start)
+    _listen(solver, began, over, on_solution, should_stop)
+    if len(model.matrix.data) <= LARGE:
+        run(solver)
+    elif not _run_until(solver, began + time_limit + LATE):
+        over.set()
+        return MilpResult("unknown", None, -np.inf, None, perf_counter() - began, 0)
+    return _result(solver, model, perf_counter() - began)
+
+
+def _listen(
+    solver: Any,
+    began: float,
+    over: Event,
+    on_solution: OnSolution | None,
+    should_stop: Callable[[], bool] | None,
+) -> None:
+    """Have HiGHS tell of better solutions, and ask whether to go on; once it is `over`, neither."""
     if on_solution is not None:
         report = on_solution
 
         def improved(event: Any) -> None:
-            report(
-                perf_counter() - began, event.data_out.objective_function_value, np.array(event.data_out.mip_solution)
-            )
+            if not over.is_set():
+                found = event.data_out
+                report(perf_counter() - began, found.objective_function_value, np.array(found.mip_solution))
 
         solver.cbMipImprovingSolution += improved
     if should_stop is not None:
         asked = should_stop
 
         def interrupt(event: Any) -> None:
-            if asked():
+            if over.is_set() or asked():
                 event.interrupt()
 
         solver.cbMipInterrupt += interrupt
-    run(solver)
-    return _result(solver, model, perf_counter() - began)
+
+
+def _run_until(solver: Any, end: float) -> bool:
+    """Run HiGHS on a large model, and leave it where it does not end in time; whether it has ended.
+
+    Its presolve looks at the clock between rules alone, which on large models is seconds apart. What is left runs to
+    its next look, where its own time limit ends it.
+    """
+    raised: list[BaseException] = []
+
+    def go() -> None:
+        try:
+            run(solver)
+        except BaseException as error:
+            raised.append(error)
+
+    running = Thread(target=go, daemon=True)
+    running.start()
+    running.join(max(0.0, end - perf_counter()))
+    for error in raised:
+        raise error
+    return not running.is_alive()
 
 
 def run(solver: Any) -> None:
