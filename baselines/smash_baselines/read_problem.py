@@ -259,7 +259,7 @@ class _Interpreter:
         placed = sum(map(len, piles.values()))
         kind = self.raw.names.get("goal") or ("on" if not piles else "")
         if kind == "on" and not piles:
-            on = {self.block_of[upper]: self.block_of[under] for under, upper in upon.items()}
+            on = {self.block_of[fact[1]]: self.block_of[fact[2]] for fact in facts if fact[0] == "on"}
             return OnGoal(on, bottom, words[RESTS], words[CLEAR])
         if placed == len(self.block_of) and kind != "positions":
             return StacksGoal({location: tuple(pile) for location, pile in piles.items()})

@@ -129,7 +129,7 @@ def test_a_clear_or_resting_block_need_not_be_picked_from_the_region():
 @pytest.mark.parametrize("wanted", TOPPLE_ENCODINGS)
 def test_every_plan_can_be_said_and_every_problem_reads_back(wanted):
     for seed in range(80):
-        problem = related(seed, contradictory=0)
+        problem = related(seed)
         instance, options = problem.instance, problem.options
         if unsupported_reason(problem, wanted):
             continue

@@ -1,12 +1,14 @@
 """`ontable` and `clear` goals and a full hand at the start: every word of every planner held to exhaustive search."""
 
+import tracemalloc
 from time import perf_counter
 
 import pytest
 
 from smash.planners.greedy.passes import greedy_plans
 from smash.planners.precedence.bound import precedence_bound
-from smash.planners.protocol import Settings, ask, why_refused
+from smash.planners.protocol import Settings, SolveLog, ask, why_refused
+from smash.planners.protocol.first_place import plan_first_places
 from smash.planners.registry import get_planner
 from smash.problem import Law, OnGoal, PlanOptions, make_instance
 from smash.problem.problem import Problem
@@ -182,3 +184,14 @@ class TestFullHand:
         plan = hold_to("smash-layered", problem, 10.0, Settings(warm_start="greedy"))
         assert plan.status == "optimal"
         assert plan.incumbents[0].origin == "greedy"
+
+
+def test_what_is_left_after_each_of_many_first_places_is_not_held_at_once():
+    blocks = [f"b{number}" for number in range(1000)]
+    start = {f"s{number}": [block] for number, block in enumerate(blocks[1:])}
+    log = SolveLog(Problem(make_instance(start, OnGoal({blocks[0]: blocks[1]}), hand=blocks[0])))
+    tracemalloc.start()
+    plan_first_places(log, perf_counter(), lambda rest, until: None)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 10_000_000  # bytes; 1,000 starts of 1,000 locations are four times as much

@@ -31,18 +31,22 @@ PlanRest = Callable[[SolveLog, float], object]
 
 @dataclass(slots=True)
 class _First:
-    """A first place: what it costs, what is left to plan, and what the rest costs at least.
+    """A first place: what it costs, and what the rest costs at least.
 
     `guess` is what the rest seems to cost; `ended` where the last look left time over.
     """
 
+    problem: Problem
     place: Place
     price: int
-    rest: Problem
     guess: float = math.inf
     bound: float = 0.0
     origin: str = "start"
     ended: bool = False
+
+    def rest(self) -> Problem:
+        """Return what is left to plan: made anew for each look, as there may be as many places as blocks."""
+        return Problem(after_place(self.problem.instance, self.place.target), self.problem.options)
 
     @property
     def least(self) -> float:
@@ -97,7 +101,7 @@ def _firsts(problem: Problem, until: float) -> list[_First]:
     firsts: list[_First] = []
     for target in (*distinct_locations(instance), *law.open_carriers(start)):
         place = Place(instance.hand, target)
-        first = _First(place, law.cost(start, place), Problem(after_place(instance, target), problem.options))
+        first = _First(problem, place, law.cost(start, place))
         if left(until) > 0 or not firsts:
             _judge(first)
         firsts.append(first)
@@ -106,7 +110,7 @@ def _firsts(problem: Problem, until: float) -> list[_First]:
 
 def _judge(first: _First) -> None:
     """Guess what is left to do: two actions a block that has to be put, one a stack of which some fall."""
-    rest = first.rest
+    rest = first.rest()
     if rest.infeasible is not None:
         first.bound, first.origin = math.inf, "feasibility"
         return
@@ -119,7 +123,7 @@ def _look(first: _First, firsts: Sequence[_First], log: SolveLog, seconds: float
     """Plan from a first place for some seconds; keep what that proves, at once."""
     relay = _Relayed(first, firsts, log)
     worth = None if log.upper is None else log.upper - first.price
-    relay.inner = inner = SolveLog(first.rest, relay, gentle=log.gentle, worth=worth)
+    relay.inner = inner = SolveLog(first.rest(), relay, gentle=log.gentle, worth=worth)
     began = perf_counter()
     plan_rest(inner, began + seconds)
     if inner.refuted is not None:
