@@ -1,4 +1,4 @@
-"""Domains of further shapes: surfaces, sites, hands in `holding`, opposites, relations told twice, two steps at once."""
+"""Domains of further shapes: surfaces, sites, hands in `holding`, opposites, relations told twice, macros."""
 
 import pytest
 
