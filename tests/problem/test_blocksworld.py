@@ -10,6 +10,7 @@ from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from smash import plan
 from smash.cli.import_blocks import command
 from smash.planners.precedence import PrecedencePlanner
 from smash.planners.protocol import SolveOptions
@@ -222,6 +223,28 @@ def test_contradictory_goals_come_in_where_the_format_holds_them_and_are_infeasi
     ):
         result = PrecedencePlanner().solve(blocksworld_instance(goal), SolveOptions(), 5.0)
         assert result.status == "infeasible"
+
+
+@pytest.mark.parametrize(
+    ("text", "topple", "without"),
+    [
+        # uncover one block; a tower that is to lie on the table; a start with a full hand; facts that say nothing new
+        (problem("a b c", "(ontable a) (on b a) (on c b) (clear c) (handempty)", "(clear b)"), 1, 2),
+        (problem("a b c d", "(ontable a) (on b a) (on c b) (on d c) (clear d) (handempty)",
+                 "(and (ontable a) (ontable b) (ontable c) (ontable d))"), 1, 6),
+        (problem("a b c", "(ontable a) (on b a) (on c b) (clear c) (handempty)", "(forall (?x) (ontable ?x))"), 1, 4),
+        (problem("a b", "(holding b) (ontable a) (clear a)", "(on b a)"), 1, 1),
+        (problem(init="(ontable a) (on b a) (clear b) (handempty) (not (clear a)) (not (holding b))",
+                 goal="(and (ontable a) (ontable b))"), 1, 2),
+        (problem(init="(on-table a) (on b a) (clear b)"), 4, 4),
+        (problem(init="(ontable a) (on b a) (clear b) (handempty) (blue a) (= (price a) 7) (same b b)"), 4, 4),
+    ],
+)  # fmt: skip
+def test_problems_in_other_words_have_the_right_optimum(text, topple, without):
+    instance = blocksworld_instance(text)
+    for allowed, cost in ((True, topple), (False, without)):
+        answer = plan(instance, planner="astar", topple=allowed, budget=20)
+        assert (answer.status, answer.cost) == ("optimal", cost)
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "latin-1"])

@@ -1,4 +1,4 @@
-"""Domains of further shapes: surfaces, sites, hands in `holding`, opposites, facts told twice, two steps in one."""
+"""Domains of further shapes: surfaces, sites, hands in `holding`, opposites, relations told twice, macros."""
 
 import pytest
 
