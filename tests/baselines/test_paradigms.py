@@ -9,6 +9,7 @@ from smash.planners.registry import get_planner
 from smash.problem import Costs, PlanOptions, PositionsGoal, StacksGoal, make_instance
 from smash.problem.errors import Unsupported
 from smash.problem.problem import Problem
+from smash.problem.sets.generators import generate
 from smash.problem.sets.suites import read_suite
 from tests.oracle import optimal_cost
 from tests.relations import related
@@ -120,3 +121,10 @@ def test_without_its_package_the_extra_is_named(monkeypatch, name):
     monkeypatch.setitem(__import__("sys").modules, module, None)
     with pytest.raises(Unsupported, match=rf"pip install 'smash-testbed\[{name}\]'"):
         get_planner(name)
+
+
+def test_a_model_that_takes_longer_than_the_budget_is_not_begun(planner):
+    (large,) = generate("multi", 100, buffers=100, seed=2)
+    answer = planner.plan(Problem(large), Settings(), 0.5)
+    assert answer.status == "unknown"
+    assert "takes longer to build" in answer.details["stopped"]

@@ -19,6 +19,7 @@ class ClingoPlanner(GrowingPlanner):
     summary: ClassVar[str] = "answer set programming (clingo): what stands on what, step by step"
     name: ClassVar[str] = "clingo"
     module: ClassVar[str] = "clingo"
+    cells_per_second: ClassVar[int] = 20_000
 
     def prepare(self) -> None:
         """Load clingo."""

@@ -24,6 +24,7 @@ class DidpPlanner(ParadigmPlanner):
     summary: ClassVar[str] = "domain-independent dynamic programming (didppy): what stands on what, no time index"
     name: ClassVar[str] = "didp"
     module: ClassVar[str] = "didppy"
+    cells_per_second: ClassVar[int] = 3_000
 
     def prepare(self) -> None:
         """Load didppy."""
@@ -34,9 +35,9 @@ class DidpPlanner(ParadigmPlanner):
         import didppy
 
         log.prove(task.least_cost(0), "moves")
-        transitions = task.blocks * (task.table + 3)
-        if transitions > MOST_TRANSITIONS:
-            log.details["stopped"] = f"the model has {transitions:,} transitions; {MOST_TRANSITIONS:,} are built"
+        reason = self.why_too_large(task.blocks * (task.table + 3), MOST_TRANSITIONS, left(until))
+        if reason is not None:
+            log.details["stopped"] = reason
             return
         model = Model(didppy, task)
         solver = didppy.CBFS(model.program, time_limit=max(0.01, left(until)), quiet=True)

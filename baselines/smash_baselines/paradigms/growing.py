@@ -23,7 +23,8 @@ MOST_CELLS = 3_000_000
 
 Ended = Literal["exhausted", "stopped"]
 """How the solve of a horizon ended: all its plans cheaper than the best are ruled out, or the time was over."""
-Found = Callable[[Sequence[Step]], None]
+Found = Callable[[Sequence[Step]], bool]
+"""Takes the steps of a plan; whether to look for better ones."""
 
 
 class ParadigmPlanner(MethodPlanner):
@@ -36,6 +37,8 @@ class ParadigmPlanner(MethodPlanner):
     module: ClassVar[str]
     """The module of the extra that it needs."""
     name: ClassVar[str]
+    cells_per_second: ClassVar[int]
+    """Cells of its model (transitions, where it has no steps) that are at least built in a second."""
 
     def missing(self) -> str | None:
         """Return what is not installed, or None."""
@@ -55,12 +58,31 @@ class ParadigmPlanner(MethodPlanner):
     def search(self, task: Task, settings: Settings, log: SolveLog, until: float) -> None:
         """Plan until `until` [s, clock of `perf_counter`], handing plans and bounds to the log."""
 
-    def offer(self, task: Task, log: SolveLog, steps: Sequence[Step]) -> None:
-        """Hand the plan of some steps to the log; one that the law refuses is recorded as refused."""
+    def why_too_large(self, cells: int, most: int, seconds: float) -> str | None:
+        """Return why a model is not built, or None.
+
+        Args:
+            cells: its size.
+            most: the largest that is built however much time there is.
+            seconds: time left for it [s].
+        """
+        if cells > most:
+            return f"the model has {cells:,} cells; {most:,} are built"
+        if cells > self.cells_per_second * seconds:
+            return f"the model has {cells:,} cells, which takes longer to build than the {seconds:.2g} s left"
+        return None
+
+    def offer(self, task: Task, log: SolveLog, steps: Sequence[Step]) -> bool:
+        """Hand the plan of some steps to the log; one that the law refuses is recorded as refused.
+
+        Returns:
+            Whether something is left to be found.
+        """
         try:
             log.offer(task.actions(steps), self.name)
         except IllegalAction as error:
             log.refusals.append(f"{self.name}: {error}")
+        return not log.settled
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,8 +117,9 @@ class GrowingPlanner(ParadigmPlanner):
         log.prove(task.least_cost(0), "moves")
         while not log.settled and left(until) > 0:
             cells = task.blocks * (task.table + 1) * steps
-            if cells > MOST_CELLS:
-                log.details["stopped"] = f"a model of {steps} steps has {cells:,} cells; {MOST_CELLS:,} are built"
+            reason = self.why_too_large(cells, MOST_CELLS, left(until))
+            if reason is not None:
+                log.details["stopped"] = reason
                 return
             log.details["horizon"] = steps
             horizon = Horizon(task, steps, log.cost, settings, left(until))
