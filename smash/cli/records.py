@@ -57,7 +57,10 @@ def check(results: Path, experiment: Path | None) -> None:
     """
     from smash.experiments.episodes.audit import audit_episodes
     from smash.experiments.sweeps.audit import audit
+    from smash.records.files import RUNS
 
+    if not RUNS.path(results).is_file() and (results / "scaling.csv").is_file():
+        raise MalformedFile(str(results), "its records were not kept, only the table made of them (scaling.csv)")
     checks = audit(results, partial(_planned, results, experiment)) + audit_episodes(results)
     _show(checks)
     findings = [finding for check in checks for finding in check.findings]

@@ -157,6 +157,24 @@ def test_a_planner_that_prints_disturbs_nothing(run):
     assert "more noise" in report.log
 
 
+def test_what_a_planner_prints_counts(run, alive):
+    report = run("prints-for-ever", memory=300)
+    assert report.outcome == "memory"
+    assert "printed and written to its scratch folder, the limit is 300" in report.reason
+    assert not alive()
+
+
+def test_a_killed_guardian_leaves_no_folder_and_no_process(run, alive, monkeypatch, tmp_path):
+    noted = tmp_path / "scratch"
+    monkeypatch.setenv("STARTS", str(noted))
+    report = run("kills-its-guardian")
+    assert (report.outcome, report.reason) == ("crashed", "the process that guards the run was killed")
+    folder = noted.read_text()
+    assert "smash-run-" in folder
+    assert not os.path.exists(folder)
+    assert not alive()
+
+
 def test_a_hang_is_stopped_and_keeps_its_plan(run, alive):
     report = run("hangs-with-plan", budget=1.0)
     assert (report.outcome, report.plan.status, report.exit_code) == ("over-budget", "feasible", 0)

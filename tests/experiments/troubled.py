@@ -2,6 +2,7 @@
 
 import ctypes
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -178,6 +179,21 @@ class Babbles:
         return PlanResult("feasible", detour(instance, 0))
 
 
+class PrintsForEver:
+    def solve(self, instance, options, budget, on_incumbent=None):
+        while True:
+            os.write(1, b"noise " * 2**16)
+            time.sleep(0.001)
+
+
+class KillsItsGuardian:
+    def solve(self, instance, options, budget, on_incumbent=None):
+        with open(os.environ["STARTS"], "w") as file:
+            file.write(os.environ["TMPDIR"])
+        os.kill(os.getppid(), signal.SIGKILL)
+        time.sleep(600)
+
+
 class NotesStarts:
     """Sound; notes each start as a line of the file that `STARTS` names, and takes its time."""
 
@@ -217,5 +233,7 @@ PLANNERS = {
     "lacks": Lacks,
     "shouts": Shouts,
     "is-sure": IsSure,
+    "prints-for-ever": PrintsForEver,
+    "kills-its-guardian": KillsItsGuardian,
     "babbles": Babbles,
 }

@@ -1,7 +1,8 @@
 """The guardian: a small process between a run and whoever asked for it, which no planner outlives.
 
 It forks the planner's process, passes on the JSON lines that this one says, and watches three limits: wall
-time (budget and grace), memory (resident set of the whole tree) and start-up. It ends the whole tree (Fast
+time (budget and grace), memory (resident set of the whole tree; what it prints and writes to its scratch folder may
+not be more either) and start-up. It ends the whole tree (Fast
 Downward, Java, whatever was started, in sessions of their own too) when a limit is hit, when the planner
 has answered, and when its own standard input closes: that is how a caller stops it, and what the kernel
 does where the caller is killed. If the guardian itself is killed, the planner's process dies with it.
@@ -17,6 +18,7 @@ import selectors
 import signal
 import sys
 import tempfile
+from contextlib import suppress
 from time import monotonic, sleep
 from types import FrameType
 from typing import TYPE_CHECKING, Any, BinaryIO, NoReturn
@@ -47,16 +49,21 @@ def guard(job: Job) -> None:
     signal.signal(signal.SIGTERM, _leave)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     adopt_orphans(True)
-    with tempfile.TemporaryDirectory(prefix="smash-run-", ignore_cleanup_errors=True) as scratch:
+    with tempfile.TemporaryDirectory(prefix=scratch_prefix(os.environ[MARK]), ignore_cleanup_errors=True) as scratch:
         os.environ["TMPDIR"] = scratch
         tempfile.tempdir = None
         with open(os.path.join(scratch, "said.txt"), "w+b") as said:
             pipe, planner = _start(job, said)
-            watch = _Watch(job, planner, pipe, said)
+            watch = _Watch(job, planner, pipe, said, scratch)
             try:
                 watch.run()
             finally:
                 watch.end_all()
+
+
+def scratch_prefix(mark: str) -> str:
+    """Return how the name of a run's scratch folder begins: whoever outlives a guardian finds it by its mark."""
+    return f"smash-run-{mark[:16]}-"
 
 
 def _leave(signum: int, frame: FrameType | None) -> NoReturn:
@@ -87,8 +94,9 @@ def _start(job: Job, said: BinaryIO) -> tuple[int, int]:
 class _Watch:
     """Passes on what the planner says, and ends it at its limits."""
 
-    def __init__(self, job: Job, planner: int, pipe: int, said: BinaryIO) -> None:
+    def __init__(self, job: Job, planner: int, pipe: int, said: BinaryIO, scratch: str) -> None:
         self.job = job
+        self.scratch = scratch
         self.planner = planner
         self.pipe = pipe
         self.said = said
@@ -118,8 +126,8 @@ class _Watch:
                     self._reap(patience=1.0)
                 if monotonic() >= next_look:
                     self._reap()
-                    if self._look_at_memory() > self.job.memory:
-                        return self._ended("memory", f"{self.peak:.0f} MiB used, the limit is {self.job.memory}")
+                    if (beyond := self._beyond_memory()) is not None:
+                        return self._ended("memory", f"{beyond}, the limit is {self.job.memory}")
                     next_look = monotonic() + SAMPLING
                 if self.answered or self.status is not None:
                     while self._pass_on():
@@ -166,6 +174,13 @@ class _Watch:
         """Return a line of the planner with the time of its arrival, in seconds from the start of its clock."""
         at = 0.0 if self.started is None else monotonic() - self.started
         return b'{"at": %.6f, ' % at + line[1:] if line.startswith(b"{") else line
+
+    def _beyond_memory(self) -> str | None:
+        """Return what of the run takes more than its limit, or None."""
+        if self._look_at_memory() > self.job.memory:
+            return f"{self.peak:.0f} MiB used"
+        written = _size(self.scratch)
+        return f"{written:.0f} MiB printed and written to its scratch folder" if written > self.job.memory else None
 
     def _look_at_memory(self) -> float:
         """Return the resident set of the planner's tree [MiB], and keep its peak."""
@@ -229,6 +244,16 @@ class _Watch:
             "log": "\n".join(lines),
         }
         _say(json.dumps(message).encode())
+
+
+def _size(folder: str) -> float:
+    """Return how much the files of a folder take [MiB]."""
+    total = 0
+    for place, _, files in os.walk(folder):
+        for name in files:
+            with suppress(OSError):
+                total += os.lstat(os.path.join(place, name)).st_blocks * 512
+    return total / 2**20
 
 
 def _kill(process: psutil.Process) -> None:

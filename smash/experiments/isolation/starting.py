@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
@@ -20,7 +22,7 @@ from pathlib import Path
 from time import monotonic, sleep
 from typing import IO, NoReturn
 
-from smash.experiments.isolation.guardian import MARK, guard
+from smash.experiments.isolation.guardian import MARK, guard, scratch_prefix
 from smash.experiments.isolation.job import Job
 from smash.experiments.isolation.lifetime import adopting_orphans
 
@@ -179,10 +181,12 @@ def _has_one_thread() -> bool:
 
 
 def _end_marked(mark: str) -> None:
-    """End what a killed guardian has left behind, found by the mark in its environment."""
+    """End what a killed guardian has left behind, found by the mark in its environment, and its scratch folder."""
     import psutil
 
     for process in psutil.process_iter():
         with suppress(psutil.Error, OSError):
             if process.environ().get(MARK) == mark:
                 process.kill()
+    for folder in Path(tempfile.gettempdir()).glob(f"{scratch_prefix(mark)}*"):
+        shutil.rmtree(folder, ignore_errors=True)
