@@ -55,25 +55,24 @@ class Relaxation:
 
     def tight(self, slack: float, longest: int) -> list[Row]:
         """Return the rows of at most `longest` columns that the values exceed by less than `slack`."""
-        return [
-            row
-            for row, needed in self._sent
-            if len(row) <= longest and float(self.values[list(row)].sum()) - needed < slack
-        ]
+        return [row for row, needed in self._sent if len(row) <= longest and self._excess(row, needed) < slack]
 
     def drop_slack(self, slack: float) -> None:
-        """Drop the rows that the last solution exceeds by more than `slack`."""
-        needed = np.array([needed for _, needed in self._sent])
-        dropped = np.flatnonzero(np.array(self._model.getSolution().row_value) - needed > slack)
+        """Drop the rows that the values exceed by more than `slack`."""
+        kept = [self._excess(row, needed) <= slack for row, needed in self._sent]
+        dropped = np.flatnonzero(~np.array(kept, dtype=bool))
         if len(dropped):
             self._model.deleteRows(len(dropped), dropped.astype(np.int32))
-            gone = set(dropped.tolist())
-            self._sent = [asked for index, asked in enumerate(self._sent) if index not in gone]
+            self._sent = [asked for asked, keep in zip(self._sent, kept, strict=True) if keep]
             self._asked = {}
             self._note(self._sent)
 
+    def _excess(self, row: Row, needed: int) -> float:
+        return float(self.values[list(row)].sum()) - needed
+
     def solve(self, deadline: float) -> bool:
         """Solve the linear program; whether it ended with an optimum before `deadline` [s, `time.perf_counter`]."""
+        self._set_kind(highspy.HighsVarType.kContinuous)
         if not self._run(deadline):
             return False
         self.values = np.array(self._model.getSolution().col_value)
@@ -94,9 +93,7 @@ class Relaxation:
         Returns:
             The optimum's values, or None where the solver was stopped before.
         """
-        count = len(self.values)
-        kinds = np.full(count, highspy.HighsVarType.kInteger)
-        self._model.changeColsIntegrality(count, np.arange(count, dtype=np.int32), kinds)
+        self._set_kind(highspy.HighsVarType.kInteger)
         self._model.setOptionValue("mip_abs_gap", gap)
         self._model.setOptionValue("mip_rel_gap", 0.0)
 
@@ -113,6 +110,10 @@ class Relaxation:
         if not ended or info.primal_solution_status != highs.FEASIBLE_POINT:
             return None
         return np.round(np.array(self._model.getSolution().col_value))
+
+    def _set_kind(self, kind: highspy.HighsVarType) -> None:
+        count = len(self.values)
+        self._model.changeColsIntegrality(count, np.arange(count, dtype=np.int32), np.full(count, kind))
 
     def _run(self, deadline: float, known: set[int] | None = None) -> bool:
         left = deadline - perf_counter()

@@ -1,0 +1,56 @@
+"""The rows in the solver: fractions where they are allowed, whole columns where they are asked for, and back."""
+
+import math
+
+import numpy as np
+import pytest
+
+from smash.planners.precedence.relaxation import Relaxation
+
+PAIRS = [frozenset({0, 1}), frozenset({1, 2}), frozenset({0, 2})]
+
+
+@pytest.fixture
+def triangle():
+    """Three columns of which each two must have one."""
+    relaxation = Relaxation(np.ones(3), 1)
+    assert all(relaxation.add(row) for row in PAIRS)
+    return relaxation
+
+
+def test_fractions_before_and_after_whole_columns(triangle):
+    assert triangle.solve(math.inf)
+    assert triangle.objective == pytest.approx(1.5)
+    bounds = []
+    whole = triangle.solve_whole(math.inf, {0, 1, 2}, 0.999, bounds.append)
+    assert whole.sum() == 2
+    assert bounds[-1] > 1.0
+    assert triangle.solve(math.inf)
+    assert triangle.objective == pytest.approx(1.5)
+
+
+def test_a_row_may_ask_for_more_than_before_and_never_for_less(triangle):
+    assert triangle.add(frozenset({0, 1, 2}), 2)
+    assert triangle.waiting
+    triangle.solve(math.inf)
+    assert not triangle.waiting
+    assert triangle.objective == pytest.approx(2.0)
+    assert not triangle.add(frozenset({0, 1, 2}), 1)
+    assert not triangle.add(PAIRS[0])
+
+
+def test_rows_that_are_exceeded_are_dropped_and_may_come_again(triangle):
+    triangle.add(frozenset({0}))
+    triangle.solve(math.inf)
+    assert set(triangle.tight(0.1, 3)) >= {frozenset({0})}
+    triangle.drop_slack(-0.5)  # every row
+    assert triangle.tight(10.0, 3) == []
+    triangle.add(PAIRS[1])
+    triangle.solve(math.inf)
+    assert triangle.objective == pytest.approx(1.0)
+    assert triangle.tight(0.1, 3) == [PAIRS[1]]
+
+
+def test_past_the_deadline_nothing_is_solved(triangle):
+    assert not triangle.solve(-math.inf)
+    assert triangle.solve_whole(-math.inf, {0, 1, 2}, 0.999, lambda bound: None) is None
