@@ -160,7 +160,7 @@ def test_a_damaged_last_episode_is_set_aside_and_carried_out_again(results, tmp_
     whole = (tmp_path / EPISODES.name).read_bytes()
     (tmp_path / EPISODES.name).write_bytes(whole[:-50])
     ended = smash("episodes", tmp_path, "--policy", "open", "--policy", "replan", "--dry-run")
-    assert "was damaged: set aside, its episode is carried out again" in ended.stderr
+    assert "damaged: set aside, its episode is carried out again" in ended.stderr
     assert "2 episodes, 1 left" in ended.stderr
     assert (tmp_path / "episodes.damaged").read_bytes().strip() in whole
 
