@@ -21,6 +21,10 @@ from smash.problem.blocksworld.world import RELATIONS, Meaning, Step
 from smash.problem.errors import Infeasible, SmashError, Unsupported
 
 Options = tuple[tuple[int, ...], dict[int, str]] | None
+MOST_EFFECTS = 40
+"""The most effects of one action; two steps of a blocks world at once have some ten."""
+MOST_TRIED = 1_000
+"""The most assignments, whole ones and parts: what fits is found among the first hundred."""
 FEW, SOME = 3, 4
 """How many blocks the search looks at, and the check of what it found."""
 
@@ -32,6 +36,7 @@ class Recognizer:
         self.domain = domain
         self.sorts = Sorts(domain)
         self._known: dict[tuple[Place, Cast], Reading | Misfit] = {}
+        self._tried = 0
 
     def reading(self, objects: Objects, facts: Sequence[Atom], where: str) -> Reading:
         """Return how the domain tells a blocks world with the objects and the start of a problem.
@@ -45,6 +50,10 @@ class Recognizer:
             Unsupported: where it is no blocks world, with what does not fit.
             Infeasible: where there is no object for an argument that every action has.
         """
+        for action in self.domain.actions:
+            if len(action.effects) > MOST_EFFECTS:
+                words = f"{action.name!r} has {len(action.effects)} effects"
+                raise Unsupported(f"{self.domain.where}: the domain {self.domain.name!r} is no blocks world: {words}")
         everything = dict(self.domain.constants) | dict(objects)
         maker = CastMaker(self.domain, self.sorts, everything, facts)
         misfits = [Misfit("no predicate that actions change says what lies on what", -1)]
@@ -89,6 +98,7 @@ class Recognizer:
         options = {name: self._places(name, cast, where) for name in self.domain.fluents}
         misfits: list[Misfit] = []
         for hand in (True, False):
+            self._tried = 0
             trial = Trial(self.domain, self.sorts, cast, samples(len(cast.kinds), FEW)[0], hand)
             for meanings in self._assign(trial, self._order(options), {}, options, misfits):
                 found = self._checked(trial, meanings)
@@ -163,6 +173,9 @@ class Recognizer:
         name, *rest = names
         for meaning in self._choices(name, options[name], trial):
             tried = {**meanings, name: meaning}
+            self._tried += 1
+            if self._tried > MOST_TRIED:
+                return
             step = None if meaning is None else trial.missing(tried)
             if step is None:
                 yield from self._assign(trial, rest, tried, options, misfits)

@@ -10,13 +10,17 @@ import itertools
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from math import prod
 
 from smash.problem.blocksworld.cast import BLOCK, Cast, Place, Sorts
 from smash.problem.blocksworld.domain import Action, Domain
 from smash.problem.blocksworld.formula import Atom, Facts, after
 from smash.problem.blocksworld.typed import Types
 from smash.problem.blocksworld.world import RELATIONS, Arrangement, Meaning, Step, arrangements, steps
+from smash.problem.errors import Unsupported
 
+MOST_GROUNDED = 2_000
+"""The most combinations of arguments of one action; four blocks, a table and a hand make some hundred."""
 Meanings = Mapping[str, Meaning | None]
 """Predicate -> what it says; None: it says nothing that matters."""
 
@@ -109,6 +113,8 @@ class Trial:
             choices = [
                 self._fitting(types, self.sorts.of_variable(action.name, name)) for name, types in action.parameters
             ]
+            if prod(map(len, choices)) > MOST_GROUNDED:
+                raise Unsupported(f"{self.domain.where}: no blocks world: {action.name!r} has too many arguments")
             names = [name for name, _ in action.parameters]
             for chosen in itertools.product(*choices):
                 among = [name for name in chosen if name in self.blocks]
