@@ -3,9 +3,12 @@
 import numpy as np
 import pytest
 
+from smash.execution.actions import pick_and_place
 from smash.execution.actions.arm_motions import RELEASE_HEIGHT, ArmMotions
-from smash.execution.actions.grasps import CENTRED
+from smash.execution.actions.grasps import CENTRED, GRASPS
 from smash.execution.actions.pick_and_place import ROOM, PickAndPlace
+from smash.execution.performing import follow
+from smash.execution.physics.world import World
 from smash.execution.scene.block_pose import QUARTER, BlockPose, standing
 from smash.execution.scene.scene_file import default_scene
 from smash.motion.collision import CONTACT_MARGIN, CollisionChecker
@@ -84,6 +87,27 @@ def test_a_block_at_the_foot_of_a_tower_is_taken_beside_its_middle_and_put_down_
     assert way.grasp == grasp
     assert np.allclose(stands[:2], target.position[:2], atol=1e-4)
     assert stands[2] == pytest.approx(target.position[2] + RELEASE_HEIGHT, abs=1e-4)
+
+
+@pytest.mark.parametrize(("grasp", "levels"), [(GRASPS[2], 1), (GRASPS[4], 5)])
+def test_a_block_held_beside_its_middle_or_leaning_stands_where_it_shall_then(arm, hand, grasp, levels, monkeypatch):
+    """In physics; what stands beside it stays. Beside a tower the wrist has no room but for a hand that leans."""
+    monkeypatch.setattr(pick_and_place, "GRASPS", (grasp,))
+    block, walls = tower_beside(0.058, levels)
+    target = standing(*default_scene().stacks[2].point(0.0, 0.0, "outward"), 0.5 * SIDE, 0.2)
+    with World(default_scene(), {"a": block, **walls}, READY) as world:
+        world.settle()
+        segments, held = hand.pick(READY, "a", world.pose("a"), arm.scene(world.poses()))
+        follow(world, segments)
+        scene = arm.scene(world.poses())
+        way = hand.landing(world.commanded(), "a", target, scene, held)
+        follow(world, hand.place(world.commanded(), "a", way, scene))
+        world.settle()
+        assert held == grasp
+        assert world.touched() == []
+        assert np.linalg.norm(world.pose("a").position - target.position) < 0.003
+        assert world.pose("a").tilt < 0.02
+        assert all(np.linalg.norm(world.pose(b).position - pose.position) < 0.002 for b, pose in walls.items())
 
 
 def test_a_block_that_stands_free_is_taken_by_its_middle(arm, hand):
