@@ -66,11 +66,11 @@ def proof(cost, label="liar", **more):
             "a plan of 10 of multi-9/i0, max-topple-2, 0 buffers",
         ),
         (
-            record(0, label="liar", status="infeasible", outcome="infeasible"),
+            record(0, **NO_PLAN),
             record(0, [(1.0, 10)]),
             "there is no plan",
         ),
-        (record(0, label="liar", status="infeasible", outcome="infeasible"), record(1), "start and goal show that"),
+        (record(0, **NO_PLAN), record(1), "start and goal show that"),
     ],
 )
 def test_a_false_claim_is_named_and_every_proof_of_its_planner_left_out(claim, plan, said):
