@@ -5,11 +5,15 @@ import re
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from smash.problem.extras import EXTRAS, MissingExtra, is_there
 from tests.experiments import troubled
 
 ROOT = Path(__file__).parent.parent
+# No test of the default run says how long something takes: a busy machine is no fault of what is drawn.
+settings.register_profile("unhurried", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("unhurried")
 LACKING = {module: extra for extra, modules in EXTRAS.items() for module in modules if not is_there(module)}
 """Modules that an extra brings and that are not installed here: tests that import them are skipped, and say so."""
 
