@@ -23,7 +23,7 @@ from smash.problem.errors import Infeasible, SmashError, Unsupported
 Options = tuple[tuple[int, ...], dict[int, str]] | None
 MOST_EFFECTS = 40
 """The most effects of one action; two steps of a blocks world at once have some ten."""
-MOST_TRIED = 1_000
+MOST_TRIED = 300
 """The most assignments, whole ones and parts: what fits is found among the first hundred."""
 FEW, SOME = 3, 4
 """How many blocks the search looks at, and the check of what it found."""

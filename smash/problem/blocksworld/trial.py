@@ -21,6 +21,8 @@ from smash.problem.errors import Unsupported
 
 MOST_GROUNDED = 2_000
 """The most combinations of arguments of one action; four blocks, a table and a hand make some hundred."""
+MOST_CHANGES = 20_000
+"""The most changes that one action makes with all its arguments together."""
 Meanings = Mapping[str, Meaning | None]
 """Predicate -> what it says; None: it says nothing that matters."""
 
@@ -63,6 +65,7 @@ class Trial:
     cast: Cast
     kinds: tuple[int, ...]
     hand: bool
+    _fitting_types: dict[Types, list[str]] = field(default_factory=dict)
     _encoded: dict[tuple[str, Meaning, int], frozenset[Atom]] = field(default_factory=dict)
 
     @cached_property
@@ -113,7 +116,8 @@ class Trial:
             choices = [
                 self._fitting(types, self.sorts.of_variable(action.name, name)) for name, types in action.parameters
             ]
-            if prod(map(len, choices)) > MOST_GROUNDED:
+            changes = sum(prod(len(self._things(of)) for _, of in one.variables) for one in action.effects)
+            if prod(map(len, choices)) > MOST_GROUNDED or prod(map(len, choices)) * changes > MOST_CHANGES:
                 raise Unsupported(f"{self.domain.where}: no blocks world: {action.name!r} has too many arguments")
             names = [name for name, _ in action.parameters]
             for chosen in itertools.product(*choices):
@@ -130,7 +134,10 @@ class Trial:
         return [name for name in fitting if (name in ours) == (sort == self.cast.sort)]
 
     def _things(self, types: Types) -> list[str]:
-        return [name for name, own in self._typed.items() if self.domain.types.fits(own, types)]
+        if types not in self._fitting_types:
+            fits = self.domain.types.fits
+            self._fitting_types[types] = [name for name, own in self._typed.items() if fits(own, types)]
+        return self._fitting_types[types]
 
     def encoding(self, meanings: Meanings, at: int) -> frozenset[Atom]:
         """Return the facts of a state, of the predicates that have a meaning."""
