@@ -6,7 +6,7 @@ instance = smash.generate("multi", 6, buffers=2, seed=4)[0]
 print(instance)
 for name in smash.planner_names():
     try:
-        plan = smash.plan(instance, name, budget=2, isolated=True)
+        plan = smash.plan(instance, name, budget=1, isolated=True)
     except smash.SmashError as error:
         print(f"{name:20} {error}")
         continue

@@ -206,7 +206,7 @@ def test_what_cannot_be_carried_out_is_said():
     with pytest.raises(MalformedFile, match="cannot be read"):
         smash.execute(FIGURE_1, smash.plan(FIGURE_1), scene="nowhere.toml")
     held = smash.make_instance({"s1": ["a"]}, {"s1": ["a", "b"]}, hand="b")
-    with pytest.raises(Unsupported, match="the arm begins with an empty hand, not with 'b'"):
+    with pytest.raises(Unsupported, match="starts with block 'b' in the hand"):
         smash.execute(held, smash.plan(held))
 
 

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from smash.problem.errors import RefusedPlan, Unsupported
+from smash.problem.errors import RefusedPlan
 from smash.problem.model import Instance
 from smash.problem.plan import Plan, check_plan
 
@@ -55,10 +55,6 @@ def executor_of(
     verdict = check_plan(instance, plan)
     if not verdict.accepted:
         raise RefusedPlan(f"the plan for {instance.name!r}: {verdict}")
-    if instance.hand is not None:
-        raise Unsupported(
-            f"{instance.name!r} cannot be executed: the arm begins with an empty hand, not with {instance.hand!r}"
-        )
     from smash.execution.executor import Executor
     from smash.execution.policy import OPEN
     from smash.execution.scene.scene_file import default_scene, read_scene

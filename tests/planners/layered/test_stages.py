@@ -86,11 +86,11 @@ def test_each_misplaced_block_is_a_bound_of_two():
     assert optimal_cost(made.instance) == 3
 
 
-def test_a_solution_whose_blocks_find_no_place_to_rest_is_no_plan():
+def test_a_solution_whose_blocks_find_no_place_to_rest_is_a_dearer_plan_and_proves_no_more():
     made = drawn(5, 0, False)
     log = ran("relaxations", made)
-    assert (log.cost, log.bound) == (None, 14)
-    assert optimal_cost(made.instance, made.options) == 20
+    assert log.bound == 14
+    assert 20 == optimal_cost(made.instance, made.options) <= log.cost
 
 
 def test_a_goal_chain_that_may_be_built_anywhere_has_no_resting_places():

@@ -6,7 +6,7 @@ from smash.planners.flow import FlowPlanner
 from smash.planners.layered import LayeredPlanner
 from smash.planners.milp.solvers import NEEDS
 from smash.planners.protocol import SOLVERS, Settings, SolveOptions, why_refused
-from smash.planners.registry import get_planner, planner_names
+from smash.planners.registry import COMMAND, get_planner, planner_names
 from smash.problem import PlanOptions
 from smash.problem.buffers import with_buffers
 from smash.problem.errors import Unsupported
@@ -26,7 +26,7 @@ def solver(request):
     return request.param
 
 
-@pytest.mark.parametrize("name", planner_names())
+@pytest.mark.parametrize("name", sorted({*planner_names()} - {COMMAND}))  # which is nobody without a program
 def test_planners_without_a_milp_take_no_solver_and_no_warm_start(name):
     try:
         planner = get_planner(name)
