@@ -174,13 +174,13 @@ def _told(problem: Problem) -> tuple[Recognizer, ProblemText, Words]:
     writer = PDDLWriter(problem)
     try:
         texts = writer.get_domain(), writer.get_problem()
+        words = Words(
+            {item.name: writer.get_pddl_name(item) for item in problem.all_objects},
+            {action.name: writer.get_pddl_name(action) for action in problem.actions},
+        )
     except (UPException, NotImplementedError, AssertionError) as error:
         raise Unsupported(f"PDDL cannot tell the problem ({error})") from None
     domain, text = (parse_expression(text, WHERE) for text in texts)
-    words = Words(
-        {item.name: writer.get_pddl_name(item) for item in problem.all_objects},
-        {action.name: writer.get_pddl_name(action) for action in problem.actions},
-    )
     return Recognizer(domain_from(domain, WHERE)), problem_from(text, WHERE), words
 
 
