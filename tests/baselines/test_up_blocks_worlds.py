@@ -249,6 +249,13 @@ def test_what_is_called_optimal_is_the_shortest_of_every_kind(kind, seed):
     assert int(result.metrics["lower_bound"]) <= best <= len(result.plan.actions)
 
 
+def test_what_a_domain_says_of_its_table_is_no_contradiction():
+    dress = Dress("three-table")
+    asked = dressed(dress, (("a", "b"), ("c",)), "(and (clear slab))")
+    assert shortest(asked) == 1
+    assert answers(asked, "precedence")[-1].status == Status.UNSUPPORTED_PROBLEM
+
+
 def test_where_an_action_is_worth_two_nothing_is_called_optimal():
     jump = """(:action jump :parameters (?x ?y) :precondition (and (clear ?x) (ontable ?x) (clear ?y) (handempty))
      :effect (and (on ?x ?y) (not (ontable ?x)) (not (clear ?y))))"""

@@ -147,8 +147,10 @@ class GoalReader:
             self._relation(atom, meaning, about)
         elif meaning.relation == "on" and meaning.positive and about[0] in self.blocks and self._is_table(about[1]):
             self._rest_on_table(about[0])
-        elif atom not in self.facts or meaning.relation == "on":
+        elif meaning.relation == "on":
             self.infeasible(f"{show(list(atom))} never holds")
+        elif atom not in self.facts:  # some domains say of the table that it is clear once something was taken off it
+            self.unsupported(list(atom), "more than where blocks are")
 
     def _is_table(self, name: str) -> bool:
         return name == self.reading.table
