@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING
@@ -14,7 +14,6 @@ from smash_baselines.names import Fact, Step
 from smash_baselines.read_problem import RawProblem, ReadProblem, interpret
 from smash_baselines.steps import actions_of, steps_of
 from smash_baselines.up_classical import Classical, read_classical
-from smash_baselines.up_matching import match
 
 if TYPE_CHECKING:
     from unified_planning.model import FNode, Problem
@@ -23,6 +22,7 @@ _NO_PROBLEM = """(define (problem none) (:domain {}) (:init (= (total-cost) 0)) 
                   (:metric minimize (total-cost)))"""
 """The library reads costs as costs only where a problem minimises them."""
 _COSTS = "total-cost"
+_DOMAINS = f"one of the domains {', '.join(encoding.domain for encoding in ENCODINGS.values())}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +48,20 @@ class OwnReading:
         """What its plans may use."""
         return self.read.options
 
+    @property
+    def keeps_hand(self) -> bool:
+        """Whether the hand is empty at the end of every plan: so the law has it."""
+        return True
+
+    @property
+    def may_end_full(self) -> bool:
+        """Whether a plan may end one step earlier with a block in the hand: never."""
+        return False
+
+    def bound(self, lower: int) -> int:
+        """Return how many steps a plan of the problem has at least, where one of ours costs at least `lower`."""
+        return lower
+
     def steps(self, actions: Sequence[Action]) -> list[Step]:
         """Return the problem's steps for a legal plan.
 
@@ -71,19 +85,23 @@ Reading = OwnReading | Classical
 def reading_of(problem: Problem) -> Reading:
     """Return the instance of a unified-planning problem, with the way between its plans and ours.
 
-    Its actions are those of one of our domains, or do what those of a classical blocks world with a hand do.
+    Its actions are those of one of our domains, or do what those of a classical blocks world do.
 
     Raises:
         Unsupported: where the actions are other ones, the goal is no conjunction of facts, or there is more to it:
             constraints on the way, timed goals, a metric that is neither costs nor length.
         MalformedFile: where the facts describe no instance.
+        Infeasible: where the goal of a blocks world asks for what cannot be.
     """
     unit = _counts_steps(problem)
-    if match(problem) is not None:
-        if not unit:
-            raise Unsupported("a blocks world whose actions do not all cost 1")
-        return read_classical(problem, _start(problem), _goal(problem))
-    return OwnReading(*_own(problem))
+    if _alike({action.name for action in problem.actions}):
+        return OwnReading(*_own(problem))
+    if not unit:
+        raise Unsupported("a blocks world whose actions do not all cost 1")
+    try:
+        return read_classical(problem)
+    except Unsupported as error:
+        raise Unsupported(f"{error} (and its actions are not those of {_DOMAINS})") from None
 
 
 def read_up_problem(problem: Problem) -> ReadProblem:
@@ -145,8 +163,7 @@ def _counts_steps(problem: Problem) -> bool:
 
 def _encoding_of(problem: Problem, *, counted: bool) -> Encoding:
     said = _actions(problem, counted=counted)
-    known = [encoding for encoding in BY_DOMAIN.values() if encoding.costs]
-    alike = [encoding for encoding in known if said.keys() == action_names(encoding.text)]
+    alike = _alike(said.keys())
     for encoding in alike:
         if said == _reference(encoding, counted=counted):
             return encoding
@@ -154,10 +171,13 @@ def _encoding_of(problem: Problem, *, counted: bool) -> Encoding:
         reference = _reference(encoding, counted=counted)
         changed = next(name for name, text in said.items() if text != reference[name])
         raise Unsupported(f"action {changed!r} is not as in {encoding.domain}")
-    domains = ", ".join(encoding.domain for encoding in ENCODINGS.values())
-    raise Unsupported(
-        f"the problem's actions are those of none of the domains {domains}, nor of a blocks world with a hand"
-    )
+    raise Unsupported(f"the problem's actions are not those of {_DOMAINS}")
+
+
+def _alike(actions: Set[str]) -> list[Encoding]:
+    """Return the encodings whose domains have actions of these names."""
+    known = (encoding for encoding in BY_DOMAIN.values() if encoding.costs)
+    return [encoding for encoding in known if actions == action_names(encoding.text)]
 
 
 @cache

@@ -1,27 +1,60 @@
-"""A classical blocks world as a unified-planning problem: known by what its four actions do, not by names.
+"""A classical blocks world as a unified-planning problem: told in PDDL by that library, and read by our reader.
 
 The classical table holds every block at once: the instance has as many stacks as blocks, no buffer, and is planned
-without topple. Each pick and each place is then one step of the problem, and back.
+without topple. Where the problem has a hand each pick and each place is one step; without one both are one move.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from itertools import pairwise
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from smash.problem.errors import IllegalAction, MalformedFile, Unsupported
-from smash.problem.making import make_instance
-from smash.problem.model import Action, Instance, OnGoal, Pick, Place, PlanOptions, State
-from smash.problem.rules import Law
-from smash_baselines.names import Fact, Step
-from smash_baselines.up_matching import Matched, in_roles, match
+from smash.problem.blocksworld.domain import domain_from
+from smash.problem.blocksworld.placing import placed
+from smash.problem.blocksworld.plan_text import PddlStep, PlanText
+from smash.problem.blocksworld.plans import exported, imported
+from smash.problem.blocksworld.problem import BlocksProblem, blocks_problem
+from smash.problem.blocksworld.reading import Reading
+from smash.problem.blocksworld.roles import Recognizer
+from smash.problem.blocksworld.sections import ProblemText, problem_from
+from smash.problem.blocksworld.sexpr import parse_expression
+from smash.problem.blocksworld.steps import kinds_of
+from smash.problem.blocksworld.world import MOVE, Arrangement
+from smash.problem.errors import IllegalAction, Infeasible, RefusedPlan, Unsupported
+from smash.problem.model import Action, Instance, OnGoal, Pick, Place, PlanOptions
+from smash_baselines.names import Step
 
 if TYPE_CHECKING:
     from unified_planning.model import Problem
 
 WHERE = "problem"
+_OF_A_HELD_BLOCK = frozenset({"uncovered", "lying"})
+"""Relations that say of a block in the hand what they say of one on the table."""
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """Names of the problem and of its PDDL text, which knows neither case nor every sign.
+
+    Attributes:
+        objects: name of an object -> in PDDL.
+        actions: name of an action -> in PDDL.
+    """
+
+    objects: Mapping[str, str]
+    actions: Mapping[str, str]
+
+    def in_pddl(self, step: Step) -> PddlStep:
+        """Return a step of the problem in PDDL."""
+        name, *arguments = step
+        return (self.actions.get(name, name), *(self.objects.get(word, word) for word in arguments))
+
+    def of_pddl(self, step: PddlStep) -> Step:
+        """Return a PDDL step in the names of the problem."""
+        objects = {word: name for name, word in self.objects.items()}
+        actions = {word: name for name, word in self.actions.items()}
+        return (actions[step[0]], *(objects[word] for word in step[1:]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,13 +62,17 @@ class Classical:
     """A classical problem read: the instance, and how its plans are said in the problem's own actions.
 
     Attributes:
-        instance: with as many stacks as blocks.
-        matched: the problem's own words.
-        keeps_hand: whether the goal says that the hand is empty.
+        instance: with as many stacks as blocks, in the problem's names.
+        told: the same in the names of its PDDL text.
+        reading: how that text tells a blocks world.
+        words: the names of both.
+        keeps_hand: whether the hand is empty at the end of every plan.
     """
 
     instance: Instance
-    matched: Matched
+    told: Instance
+    reading: Reading
+    words: Words
     keeps_hand: bool
 
     @property
@@ -45,168 +82,117 @@ class Classical:
 
     @property
     def exact(self) -> bool:
-        """Whether the problem counts what the law counts: each pick and each place is one step."""
-        return True
+        """Whether the shortest plan here is the shortest there: all its steps are one action here, or all are two."""
+        return kinds_of(self.reading) == {MOVE} or MOVE not in kinds_of(self.reading)
+
+    @property
+    def may_end_full(self) -> bool:
+        """Whether a plan may end one step earlier with a block in the hand, and not be ours without its last place.
+
+        Its last step then clears a block that the goal wants clear, of one that the goal says nothing of.
+        """
+        if self.keeps_hand:
+            return False
+        known = (*self.reading.meanings.values(), *self.reading.derived.values())
+        if any(meaning.relation in _OF_A_HELD_BLOCK for meaning in known):
+            return True
+        goal = self.instance.goal
+        assert isinstance(goal, OnGoal)
+        said = {*goal.on, *goal.on.values(), *goal.ontable, *goal.clear}
+        return bool(goal.clear) and not said.issuperset(self.instance.blocks)
+
+    def bound(self, lower: int) -> int:
+        """Return how many steps a plan of the problem has at least, where one of ours costs at least `lower`."""
+        least = lower if self.keeps_hand else max(0, lower - 1)
+        return (least + 1) // 2 if MOVE in kinds_of(self.reading) else least
 
     def steps(self, actions: Sequence[Action]) -> list[Step]:
         """Return the problem's steps for a legal plan.
 
         Raises:
             IllegalAction: where the law refuses an action.
+            Unsupported: where no action of the problem does what one of ours does.
         """
-        law = Law(self.instance, self.options)
-        return [self._step(state, action) for state, action in zip(law.states(actions), actions, strict=False)]
+        said = [_renamed(action, self.words.objects) for action in actions]
+        told = exported(self.told, said, self.reading, moves=not self.reading.hand)
+        return [self.words.of_pddl(step) for step in told.steps]
 
     def actions(self, steps: Iterable[Step]) -> list[Action]:
         """Return the law's actions for a plan of the problem.
 
-        A block goes to the first empty stack where the plan puts it down.
+        A block goes to the first empty stack where the plan puts it down; so does what is in the hand at its end.
 
         Raises:
-            IllegalAction: where a step is not of the problem, or the law refuses what it says.
+            IllegalAction: where a step is not of the problem, it is not possible, or the goal is not reached.
         """
-        named = {name: (kind, turned) for kind, (name, turned) in self.matched.actions.items()}
-        law, state = Law(self.instance, self.options), State.start_of(self.instance)
-        actions: list[Action] = []
-        for name, *arguments in steps:
-            if name not in named:
-                raise IllegalAction(f"step ({' '.join([name, *arguments])}): the problem has no such action")
-            kind, turned = named[name]
-            block, *under = reversed(arguments) if turned else arguments
-            action: Action
-            if kind in ("pick-up", "unstack"):
-                action = Pick(block, _pile_of(state, block))
-            else:
-                action = Place(block, _pile_of(state, under[0]) if under else _pile_of(state, None))
-            law.apply(state, action)
-            actions.append(action)
-        return actions
-
-    def shortened(self, actions: Sequence[Action]) -> tuple[Action, ...]:
-        """Return a plan without its last place where the goal holds with the block in the hand."""
-        if self.keeps_hand or not actions or not isinstance(actions[-1], Place):
-            return tuple(actions)
-        rest = actions[:-1]
-        *_, state = Law(self.instance, self.options).states(rest)
-        goal = self.instance.goal
-        assert isinstance(goal, OnGoal)
-        return tuple(rest) if _holds_in_hand(goal, state) else tuple(actions)
-
-    @property
-    def may_end_full(self) -> bool:
-        """Whether a plan may end one step earlier with a block in the hand.
-
-        Its last step then clears a block that the goal wants clear, of one that the goal says nothing of.
-        """
-        goal = self.instance.goal
-        assert isinstance(goal, OnGoal)
-        said = {*goal.on, *goal.on.values(), *goal.ontable, *goal.clear}
-        return not self.keeps_hand and bool(goal.clear) and not said.issuperset(self.instance.blocks)
-
-    def _step(self, state: State, action: Action) -> Step:
-        if isinstance(action, Pick):
-            under = state.piles[action.source][-2:-1]
-            kind = "unstack" if under else "pick-up"
-        else:
-            assert isinstance(action, Place)
-            under = state.piles[action.target][-1:]
-            kind = "stack" if under else "put-down"
-        name, turned = self.matched.actions[kind]
-        arguments = [action.block, *under]
-        return (name, *(reversed(arguments) if turned else arguments))
+        plan = PlanText(tuple(map(self.words.in_pddl, steps)))
+        try:
+            actions = imported(self.told, plan, self.reading).actions
+        except RefusedPlan as error:
+            raise IllegalAction(str(error)) from None
+        names = {word: name for name, word in self.words.objects.items()}
+        return [_renamed(action, names) for action in actions]
 
 
-def _pile_of(state: State, block: str | None) -> str:
-    """Return where a block stands; None: the first empty stack."""
-    for at, pile in state.piles.items():
-        if (not pile) if block is None else block in pile:
-            return at
-    raise IllegalAction(f"{block!r} stands nowhere")
+def _renamed(action: Action, names: Mapping[str, str]) -> Action:
+    assert isinstance(action, Pick | Place)
+    return replace(action, block=names[action.block])
 
 
-def _holds_in_hand(goal: OnGoal, state: State) -> bool:
-    """Whether a goal without a word on the hand holds while a block is in it."""
-    below = {upper: pile[at - 1] if at else None for pile in state.piles.values() for at, upper in enumerate(pile)}
-    covered = set(below.values())
-    return (
-        all(below.get(upper) == under for upper, under in goal.on.items())
-        and all(block in below and below[block] is None for block in goal.ontable)
-        and all(block in below and block not in covered for block in goal.clear)
-    )
-
-
-def read_classical(problem: Problem, start: Iterable[Fact], goal: Iterable[Fact]) -> Classical:
-    """Read a blocks world with a hand.
-
-    Args:
-        problem: the problem.
-        start: the facts that hold at its start.
-        goal: the facts that it wants.
+def read_classical(problem: Problem) -> Classical:
+    """Read a classical blocks world of whatever kind the reader knows.
 
     Raises:
-        Unsupported: where its actions are not those of a blocks world, or the goal speaks of something else.
+        Unsupported: where it is none, or has a part that is not supported, naming it.
         MalformedFile: where its facts describe no state of one.
+        Infeasible: where its goal asks for what cannot be.
     """
-    matched = match(problem)
-    if matched is None:
-        raise Unsupported("its actions are not those of a blocks world with a hand")
-    role_of = {name: role for role, name in matched.fluents.items()}
-    blocks = _blocks(problem)
-    held, asked = list(start), list(goal)
-    before, wanted = (in_roles(facts, role_of, turned=matched.turned) for facts in (held, asked))
-    never = [fact for fact in asked if fact[0] not in role_of and fact not in held]
-    if never:
-        raise Unsupported(f"the goal wants ({' '.join(never[0])}), which does not hold and no action brings about")
-    if any(fact[0] == "holding" for fact in wanted):
-        raise Unsupported("the goal wants a block in the hand")
-    return Classical(_instance(problem, blocks, before, wanted), matched, ("handempty",) in wanted)
-
-
-def _blocks(problem: Problem) -> list[str]:
-    kinds = {parameter.type for action in problem.actions for parameter in action.parameters}
-    if len(kinds) != 1:
-        raise Unsupported(f"its actions are about objects of {len(kinds)} types; blocks are of one")
-    return [item.name for item in problem.objects(kinds.pop())]
-
-
-def _instance(problem: Problem, blocks: Sequence[str], before: list[Fact], wanted: list[Fact]) -> Instance:
-    upper_of = {under: upper for role, upper, under in (fact for fact in before if fact[0] == "on")}
-    held = [fact[1] for fact in before if fact[0] == "holding"]
-    piles = []
-    for base in [fact[1] for fact in before if fact[0] == "ontable"]:
-        pile = [base]
-        while pile[-1] in upper_of and len(pile) <= len(blocks):
-            pile.append(upper_of[pile[-1]])
-        piles.append(pile)
-    stacks = [f"p{number}" for number in range(1, max(1, len(blocks)) + 1)]
-    _expect(before, piles, held)
-    on = {upper: under for _, upper, under in (fact for fact in wanted if fact[0] == "on")}
-    if len(on) != len({fact for fact in wanted if fact[0] == "on"}):
-        raise MalformedFile(WHERE, "the goal wants a block on two blocks: nothing fulfils it")
-    ontable, clear = (tuple(dict.fromkeys(f[1] for f in wanted if f[0] == role)) for role in ("ontable", "clear"))
-    return make_instance(
-        dict(zip(stacks, piles, strict=False)),
-        OnGoal(on, (), ontable, clear),
-        name=problem.name or "problem",
-        blocks=blocks,
-        stacks=stacks,
-        hand=held[0] if held else None,
-        where=WHERE,
+    recognizer, text, words = _told(problem)
+    try:
+        blocks_problem(replace(text, goal=["and"]), recognizer)
+    except Infeasible as error:  # what is wrong with the start is refused: a proof is about goals
+        raise Unsupported(str(error)) from None
+    read = blocks_problem(text, recognizer)
+    itself = next((upper for upper, under in read.goal.on.items() if upper == under), None)
+    if itself is not None:
+        raise Unsupported(f"the goal wants {itself!r} on itself")
+    names = {word: name for name, word in words.objects.items()}
+    return Classical(
+        instance=placed(_named(read, names), name=problem.name or "problem").instance,
+        told=placed(read).instance,
+        reading=read.reading,
+        words=words,
+        keeps_hand=read.keeps_hand or not read.reading.hand,
     )
 
 
-def _expect(before: Sequence[Fact], piles: Sequence[Sequence[str]], held: Sequence[str]) -> None:
-    """Compare what the piles come to with what the start says.
+def _told(problem: Problem) -> tuple[Recognizer, ProblemText, Words]:
+    """Return the domain and the problem as the library writes them in PDDL, and what it calls their parts there."""
+    from unified_planning.exceptions import UPException
+    from unified_planning.io import PDDLWriter
 
-    Raises:
-        MalformedFile: naming a fact that is missing or too much.
-    """
-    meant: set[Fact] = {("handempty",)} if not held else {("holding", held[0])}
-    for pile in piles:
-        meant |= {("ontable", pile[0]), ("clear", pile[-1])}
-        meant |= {("on", upper, under) for under, upper in pairwise(pile)}
-    extra, lost = sorted(set(before) - meant), sorted(meant - set(before))
-    if extra:
-        raise MalformedFile(WHERE, f"the start says ({' '.join(extra[0])}), which does not fit the rest of it")
-    if lost:
-        raise MalformedFile(WHERE, f"the start does not say ({' '.join(lost[0])}), which the rest of it means")
+    writer = PDDLWriter(problem)
+    try:
+        texts = writer.get_domain(), writer.get_problem()
+        words = Words(
+            {item.name: writer.get_pddl_name(item) for item in problem.all_objects},
+            {action.name: writer.get_pddl_name(action) for action in problem.actions},
+        )
+    except (UPException, NotImplementedError, AssertionError) as error:
+        raise Unsupported(f"PDDL cannot tell the problem ({error})") from None
+    domain, text = (parse_expression(text, WHERE) for text in texts)
+    return Recognizer(domain_from(domain, WHERE)), problem_from(text, WHERE), words
+
+
+def _named(problem: BlocksProblem, names: Mapping[str, str]) -> BlocksProblem:
+    """Return a problem with other names for its blocks."""
+    start, goal = problem.start, problem.goal
+    below = {names[upper]: None if under is None else names[under] for upper, under in start.below.items()}
+    on = {names[upper]: names[under] for upper, under in goal.on.items()}
+    ontable, clear = (tuple(names[block] for block in blocks) for blocks in (goal.ontable, goal.clear))
+    return replace(
+        problem,
+        blocks=tuple(names[block] for block in problem.blocks),
+        start=Arrangement(below, None if start.held is None else names[start.held]),
+        goal=OnGoal(on, (), ontable, clear),
+    )

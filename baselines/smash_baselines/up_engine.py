@@ -4,8 +4,7 @@
     get_environment().factory.add_engine("smash", "smash_baselines.up_engine", "SmashEngine")
     result = OneshotPlanner(name="smash").solve(problem)
 
-`problem` is of one of our domains, or a classical blocks world with a hand; anything else is answered by
-`UNSUPPORTED_PROBLEM`.
+`problem` is of one of our domains, or a classical blocks world; anything else is answered by `UNSUPPORTED_PROBLEM`.
 """
 
 from __future__ import annotations
@@ -40,15 +39,13 @@ from unified_planning.exceptions import UPUsageError
 from unified_planning.model import AbstractProblem, Problem, ProblemKind
 
 from smash.planners.registry import DEFAULT
-from smash.problem.errors import IllegalAction, MalformedFile, Unsupported
+from smash.problem.errors import IllegalAction, Infeasible, MalformedFile, Unsupported
 from smash.problem.files.documents import write_text
 from smash.problem.files.plans import action_from_list, plan_from_document
-from smash.problem.model import Action
-from smash.problem.plan import Plan
+from smash.problem.model import Action, Place
 from smash.problem.problem import Problem as SmashProblem
 from smash_baselines.engines.process import EngineProcess
 from smash_baselines.read_up import Reading, reading_of
-from smash_baselines.up_classical import Classical
 from smash_baselines.up_problem import up_plan
 from smash_baselines.up_solver import JOB, job_document
 
@@ -91,6 +88,9 @@ class SmashEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin):  # type: ig
         kind.set_problem_class("ACTION_BASED")
         kind.set_typing("FLAT_TYPING")
         kind.set_typing("HIERARCHICAL_TYPING")
+        for dress in ("NEGATIVE", "DISJUNCTIVE", "EXISTENTIAL", "UNIVERSAL"):
+            kind.set_conditions_kind(f"{dress}_CONDITIONS")
+        kind.set_conditions_kind("EQUALITIES")
         kind.set_effects_kind("CONDITIONAL_EFFECTS")
         kind.set_effects_kind("FORALL_EFFECTS")
         kind.set_quality_metrics("ACTIONS_COST")
@@ -159,6 +159,9 @@ class SmashEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin):  # type: ig
         except (Unsupported, MalformedFile) as error:
             yield _failed(PlanGenerationResultStatus.UNSUPPORTED_PROBLEM, str(error))
             return
+        except Infeasible as error:
+            yield _failed(PlanGenerationResultStatus.UNSOLVABLE_PROVEN, str(error))
+            return
         yield from answers.until(budget)
 
 
@@ -209,25 +212,25 @@ class _Answers:
         answer = plan_from_document(words["end"], "plan")
         metrics = {"planner": self.planner}
         if answer.lower_bound is not None:
-            metrics |= {"lower_bound": str(self._bound(answer)), "bound_origin": str(answer.bound_origin)}
+            metrics |= {
+                "lower_bound": str(self.reading.bound(answer.lower_bound)),
+                "bound_origin": str(answer.bound_origin),
+            }
         if answer.actions is None:
             return PlanGenerationResult(_STATUS[answer.status], None, NAME, metrics)
-        actions: Sequence[Action] = answer.actions
+        actions = self._shortened(answer.actions)
         status = _STATUS[answer.status]
-        if isinstance(self.reading, Classical):
-            actions = self.reading.shortened(actions)
-            unsure = len(actions) == len(answer.actions) and self.reading.may_end_full
-        else:
-            unsure = not self.reading.exact
-        if unsure and status == PlanGenerationResultStatus.SOLVED_OPTIMALLY:
+        longer = len(actions) == len(answer.actions) and self.reading.may_end_full
+        if status == PlanGenerationResultStatus.SOLVED_OPTIMALLY and (longer or not self.reading.exact):
             status = PlanGenerationResultStatus.SOLVED_SATISFICING
         return self._checked(status, actions, metrics)
 
-    def _bound(self, answer: Plan) -> int:
-        """Return the lower bound of a problem whose plans may end with a full hand: one step less."""
-        assert answer.lower_bound is not None
-        full = isinstance(self.reading, Classical) and not self.reading.keeps_hand
-        return max(0, answer.lower_bound - 1) if full else answer.lower_bound
+    def _shortened(self, actions: Sequence[Action]) -> Sequence[Action]:
+        """Return a plan without its last place where the problem's goal holds with the block in the hand."""
+        if self.reading.keeps_hand or not actions or not isinstance(actions[-1], Place):
+            return actions
+        shorter = self._checked(PlanGenerationResultStatus.INTERMEDIATE, actions[:-1], {})
+        return actions if shorter.plan is None else actions[:-1]
 
     def _checked(
         self, status: PlanGenerationResultStatus, actions: Sequence[Action], metrics: dict[str, str]
@@ -235,8 +238,8 @@ class _Answers:
         wrong = PlanGenerationResultStatus.INTERNAL_ERROR
         try:
             plan = up_plan(self.reading.steps(actions), self.problem)
-        except IllegalAction as error:
-            return _failed(wrong, f"the law refuses the plan: {error}")
+        except (IllegalAction, Unsupported) as error:
+            return _failed(wrong, f"the plan has no form in the problem's actions: {error}")
         verdict = SequentialPlanValidator().validate(self.problem, plan)
         if verdict.status != ValidationResultStatus.VALID:
             return _failed(wrong, f"the library's validator refuses the plan: {verdict}")

@@ -89,6 +89,7 @@ def plan_of_up_plan(plan: UpPlan, problem: Problem, task: PddlTask | None = None
     Raises:
         Unsupported: where the problem or the kind of plan is none of these.
         MalformedFile: where the problem's facts describe no instance.
+        Infeasible: where the goal of a blocks world asks for what cannot be.
         IllegalAction: where the law refuses the plan.
     """
     from smash_baselines.read_up import reading_of

@@ -43,6 +43,7 @@ class GoalReader:
         types: the hierarchy of types.
         facts: the facts of the start: those that never change hold at the end too.
         changing: the predicates that actions change or rules derive; None where no domain says so.
+        keeps_hand: whether the goal that was read wants the hand empty.
     """
 
     where: str
@@ -55,6 +56,7 @@ class GoalReader:
     on: dict[str, str] = field(default_factory=dict)
     ontable: dict[str, None] = field(default_factory=dict)
     clear: dict[str, None] = field(default_factory=dict)
+    keeps_hand: bool = False
     _taken: int = 0
 
     def goal(self, expression: Expression) -> OnGoal:
@@ -145,8 +147,10 @@ class GoalReader:
             self._relation(atom, meaning, about)
         elif meaning.relation == "on" and meaning.positive and about[0] in self.blocks and self._is_table(about[1]):
             self._rest_on_table(about[0])
-        elif atom not in self.facts or meaning.relation == "on":
+        elif meaning.relation == "on":
             self.infeasible(f"{show(list(atom))} never holds")
+        elif atom not in self.facts:  # some domains say of the table that it is clear once something was taken off it
+            self.unsupported(list(atom), "more than where blocks are")
 
     def _is_table(self, name: str) -> bool:
         return name == self.reading.table
@@ -178,7 +182,9 @@ class GoalReader:
                 self._rest_on_table(about[0])
             case ("clear" | "uncovered", True):
                 self.clear[about[0]] = None
-            case ("handempty", True) | ("holding", False):
+            case "handempty", True:
+                self.keeps_hand = True
+            case "holding", False:
                 return
             case ("holding", True) | ("handempty", False):
                 self.unsupported(list(atom), "a block in the hand at the end")

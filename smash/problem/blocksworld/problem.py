@@ -37,6 +37,7 @@ class BlocksProblem:
         reading: how the file tells it.
         unknown: predicates of the start that were passed over without a domain that says what they are.
         costs_differ: whether some of its domain's actions cost more than others.
+        keeps_hand: whether its goal wants the hand empty.
     """
 
     where: str
@@ -48,6 +49,7 @@ class BlocksProblem:
     reading: Reading
     unknown: tuple[str, ...] = ()
     costs_differ: bool = False
+    keeps_hand: bool = False
 
 
 def blocks_problem(text: ProblemText, recognizer: Recognizer | None = None) -> BlocksProblem:
@@ -78,23 +80,25 @@ def blocks_problem(text: ProblemText, recognizer: Recognizer | None = None) -> B
             raise
         hint = f" ({', '.join(unknown[:4])}: not known without the domain; give it with --domain)"
         raise MalformedFile(text.where, error.problem + hint) from None
+    reader = _goal_reader(text, domain, reading, objects, blocks)
     return BlocksProblem(
         where=text.where,
         name=text.name,
         domain=text.domain,
         blocks=blocks,
         start=start,
-        goal=_goal(text, domain, reading, objects, blocks),
+        goal=reader.goal(text.goal),
         reading=reading,
         unknown=unknown,
         costs_differ=domain is not None and not domain.even,
+        keeps_hand=reader.keeps_hand,
     )
 
 
-def _goal(
+def _goal_reader(
     text: ProblemText, domain: Domain | None, reading: Reading, objects: dict[str, Types], blocks: Sequence[str]
-) -> OnGoal:
-    reader = GoalReader(
+) -> GoalReader:
+    return GoalReader(
         where=text.where,
         reading=reading,
         objects=objects,
@@ -103,4 +107,3 @@ def _goal(
         facts=frozenset(text.facts),
         changing=None if domain is None else frozenset({*domain.fluents, *domain.rules}),
     )
-    return reader.goal(text.goal)
