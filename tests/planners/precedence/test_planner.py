@@ -29,8 +29,21 @@ def test_the_bound_holds_and_optimal_means_optimal(instance, options):
         return
     assert result.lower_bound <= best <= result.cost
     assert result.status == ("optimal" if result.cost == best == result.lower_bound else "feasible")
-    if result.lower_bound == best:
-        assert result.status == "optimal"
+
+
+def test_a_tight_bound_without_a_schedule_is_called_feasible_and_says_why():
+    """Few buffers: no schedule of the choices was found in the one order tried."""
+    instance = make_instance(
+        blocks=("b1", "b2", "b3"),
+        stacks=("s1",),
+        buffers=("u1",),
+        start={"s1": ("b2", "b1"), "u1": ("b3",)},
+        goal=OnGoal({}, bottom=("b1",)),
+    )
+    result, best = solve(instance), optimal_cost(instance, PlanOptions())
+    assert result.lower_bound <= best <= result.cost
+    if result.status == "feasible":
+        assert "the value is a lower bound" in result.details["reason"]
 
 
 @settings(max_examples=80, deadline=None)
