@@ -17,6 +17,17 @@ without_option = click.option(
     help="An aggregating action of the instance that plans may not use; may be given twice.",
 )
 
+noise_option = click.option(
+    "--noise",
+    metavar="KIND=AMOUNT,…",
+    help="What is not known exactly, of pose=3mm, yaw=2deg, camera=2mm, placement=2mm, friction=10%, mass=20%, size=1mm.",
+)
+pace_option = click.option(
+    "--pace",
+    type=click.FloatRange(0.0, 1.0, min_open=True),
+    metavar="SHARE",
+    help="Of the arm's velocity and acceleration limits, for motions; MoveIt's default is 0.1.",
+)
 
 command_option = click.option(
     "--command",

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from smash.cli.choices import noise_option, pace_option
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.episodes.asked import note_asked
 from smash.experiments.episodes.question import EpisodeRun
@@ -36,6 +37,8 @@ SECONDS_AN_EPISODE = 5.0
 )
 @click.option("--label", "labels", multiple=True, metavar="NAME", help="Only plans of this planner; repeatable.")
 @click.option("--scene", type=click.Path(path_type=Path), help="Scene file (default: the built-in scene).")
+@noise_option
+@pace_option
 @click.option("--replays", is_flag=True, help="Write a 3D replay of each plan's first episode to RESULTS/replays.")
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="At a time.")
 @click.option("--dry-run", is_flag=True, help="Say how many episodes are left and how long they take at a guess.")
@@ -45,6 +48,8 @@ def command(
     policies: tuple[str, ...],
     labels: tuple[str, ...],
     scene: Path | None,
+    noise: str | None,
+    pace: float | None,
     replays: bool,
     jobs: int,
     dry_run: bool,
@@ -57,14 +62,11 @@ def command(
     Examples:
       smash sweep experiments/tables-subset.toml --out runs/tables && smash episodes runs/tables --jobs 2
       smash episodes runs/tables --label smash --policy replan --policy open --seeds 3
+      smash episodes runs/tables --label smash --noise pose=3mm --pace 0.25
     """
     require("smash episodes", *EXECUTION)
-    if scene is not None:
-        from smash.execution.scene.scene_file import read_scene
-
-        read_scene(scene)
     file = None if scene is None else str(scene.resolve())
-    runs = episode_runs(results, range(seeds), policies, file, labels, replays)
+    runs = episode_runs(results, range(seeds), policies, file, labels, replays, noise=noise, pace=pace)
     if replays:
         (results / REPLAYS).mkdir(exist_ok=True)
     with stopped_by_signals() as stop, Writer(results, EPISODES) as records:
@@ -78,7 +80,7 @@ def command(
             click.echo(f"{bare} recorded earlier have no replay: `smash execute --replay` makes one", err=True)
         if dry_run:
             return
-        note_asked(results, seeds, policies, scene, labels)
+        note_asked(results, seeds, policies, scene, labels, noise, pace)
         done = 0
 
         def ended(run: EpisodeRun, record: EpisodeRecord) -> None:

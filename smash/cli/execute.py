@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
-from smash.cli.choices import SECONDS
+from smash.cli.choices import SECONDS, noise_option, pace_option
 from smash.cli.signals import ended_by_signals
 from smash.experiments.episodes.executors import REPLAN_BUDGET, executor_of
 from smash.problem.extras import EXECUTION, require
@@ -23,6 +23,8 @@ from smash.problem.files.plans import read_plan
     "--seed", type=click.IntRange(0, 2**31 - 1), default=0, show_default=True, help="Of the blocks' start poses."
 )
 @click.option("--scene", type=click.Path(path_type=Path), help="Scene file (default: the built-in scene).")
+@noise_option
+@pace_option
 @click.option("--no-replan", is_flag=True, help="The paper's open pipeline: the first failure ends the episode.")
 @click.option("--replanner", metavar="NAME", help="Planner to replan with (default: the plan's own, else greedy).")
 @click.option(
@@ -44,6 +46,8 @@ def command(
     plan: Path,
     seed: int,
     scene: Path | None,
+    noise: str | None,
+    pace: float | None,
     no_replan: bool,
     replanner: str | None,
     budget: float,
@@ -60,6 +64,7 @@ def command(
     Examples:
       smash execute examples/figure1.json plan.json --replay episode.html
       smash execute examples/figure1.json plan.json --seed 3 --no-replan
+      smash execute examples/figure1.json plan.json --noise pose=3mm,yaw=2deg,friction=10% --pace 0.25
     """
     require("smash execute", *EXECUTION)
     if video is not None:
@@ -91,6 +96,8 @@ def command(
         seed=seed,
         replan=not no_replan,
         scene=scene,
+        noise=noise,
+        pace=pace,
         replanner=replanner,
         budget=budget,
         gui=gui,

@@ -23,6 +23,12 @@ class OutOfReach(ExecutionFailure):
     failure = "out of reach"
 
 
+class Blind(ExecutionFailure):
+    """A block is not known well enough for the hand to come down around it; more plans would not help."""
+
+    failure = "blind"
+
+
 class NotAtGoal(ExecutionFailure):
     """All actions were carried out, and the settled blocks do not fulfil the goal."""
 

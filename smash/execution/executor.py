@@ -8,23 +8,25 @@ tries a disturbed pick again, and asks for a new plan from the observed state wh
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from time import perf_counter
 
 import numpy as np
 
 from smash.execution.actions.arm_motions import ArmMotions
-from smash.execution.errors import Fell, NotAtGoal
+from smash.execution.errors import Blind, Fell, NotAtGoal
 from smash.execution.grounding import Grounder, Task
-from smash.execution.performing import Performer
+from smash.execution.performing import SURE, Performer
 from smash.execution.physics.world import Frame, World
 from smash.execution.policy import Policy
 from smash.execution.readback import NOWHERE, fallen_off
 from smash.execution.recovery import Recovery
 from smash.execution.scene.geometry import Geometry
+from smash.execution.scene.noise import Chance
 from smash.execution.scene.start import starting_carriers, starting_poses
 from smash.execution.scene.tabletop import Tabletop
-from smash.execution.watching import Watch, part_of, spoilt
+from smash.execution.sight import Sight
+from smash.execution.watching import DISTURBED, Watch, part_of, spoilt
 from smash.motion.robot import READY
 from smash.problem.errors import ExecutionFailure, IllegalAction, Unsupported
 from smash.problem.files.plans import action_from_list, action_list
@@ -89,7 +91,8 @@ class Executor:
         self.law = Law(instance, plan.options)
         self.table = Geometry(tabletop.bind(instance), tabletop.bind_stations(instance))
         self.arm = ArmMotions(tabletop, seed)
-        self.grounder = Grounder(self.arm)
+        self.chance = Chance(tabletop, instance, seed)
+        self.grounder = Grounder(self.arm, self.chance.astray)
         self.performed: list[Performed] = []
         self.failed_at: Performed | None = None
         self.replans = 0
@@ -104,14 +107,32 @@ class Executor:
         generator = np.random.default_rng(self.seed)
         carriers = starting_carriers(self.instance, self.table.stations, self.tabletop)
         poses = starting_poses(self.instance, self.table.slots, self.tabletop, generator, carriers)
-        with World(self.tabletop, poses, READY, carriers=carriers, gui=self._gui, on_frame=self._on_frame) as world:
+        world = World(
+            self.chance.scene(),
+            self.chance.at_start(poses),
+            READY,
+            carriers=carriers,
+            made=self.chance.made,
+            gui=self._gui,
+            on_frame=self._on_frame,
+        )
+        with world:
             self.world = world
-            self.performer = Performer(world, self.grounder, self.table, self.policy)
+            self.performer = Performer(world, self.grounder, self.table, self.policy, Sight(world, self.chance))
             self.recovery = Recovery(self.instance, self.performer, self._recover)
             world.settle()
+            self.performer.look_around()
             self.watch = Watch(world.poses())
+            self.noticing = Watch(self.performer.look().blocks, DISTURBED + 2 * SURE * self.tabletop.noise.pose)
+            self.noticed: dict[str, float] = {}
             failure = self._run_plan()
-            return self._episode(failure, self.performer.observe())
+            final = self.performer.truth()
+            return self._episode(failure or self._unseen_shortfall(final), final)
+
+    def _unseen_shortfall(self, final: State) -> ExecutionFailure | None:
+        """What is missing of a goal that is seen fulfilled: success is judged by where the blocks are."""
+        shortfall = self.law.goal_shortfall(final)
+        return None if shortfall is None else NotAtGoal(f"{shortfall}, which was not seen")
 
     def _run_plan(self) -> ExecutionFailure | None:
         """Plan, execute, judge, and begin anew from what is observed as long as the policy allows it."""
@@ -123,7 +144,8 @@ class Executor:
         while True:
             failure = failure or self._perform_all(tasks, origin) or self._judge()
             self.failed_at = self.performed[-1] if self.performed else None
-            if failure is None or self.replanner is None or self.replans >= self.policy.replans:
+            hopeless = failure is None or isinstance(failure, Blind)
+            if hopeless or self.replanner is None or self.replans >= self.policy.replans:
                 return failure
             self.replans += 1
             again = self._plan_anew()
@@ -181,7 +203,7 @@ class Executor:
             self.law.apply(expected, task.action)
             observed.origin = expected.origin
             if rest is not None:
-                self._require_way_on(row, expected, observed, rest)
+                self._require_way_on(expected, observed, rest)
             expected.piles, expected.table, expected.hand = observed.piles, observed.table, observed.hand
             expected.carried, expected.stations = observed.carried, observed.stations
         except ExecutionFailure as failure:
@@ -197,8 +219,10 @@ class Executor:
         """Record what an action has moved and touched that it is not about."""
         row.disturbed |= self.watch.disturbed(self.world.poses(), part)
         row.touched += [block for block in self.world.touched() if block not in row.touched]
+        self.performer.sight.forget({*part, *row.touched})
+        self.noticed = self.noticing.disturbed(self.performer.look().blocks, part)
 
-    def _require_way_on(self, row: Performed, expected: State, observed: State, rest: Sequence[Task]) -> None:
+    def _require_way_on(self, expected: State, observed: State, rest: Sequence[Task]) -> None:
         """Raise where the rest of the plan cannot follow on what an action has left.
 
         Raises:
@@ -209,8 +233,8 @@ class Executor:
             raise Fell(_difference(expected, observed))
         if self.policy.repair:
             return
-        for block, far in row.disturbed.items():
-            spoiled = spoilt(rest, block, self.world.pose(block), self.arm)
+        for block, far in self.noticed.items():
+            spoiled = spoilt(rest, block, self.performer.look().blocks[block], self.arm)
             if spoiled is not None:
                 words = " ".join(map(str, action_list(spoiled.action)))
                 raise Fell(f"block {block!r} was moved by {far * 100:.1f} cm; {words!r} was planned without that")
@@ -221,7 +245,7 @@ class Executor:
         Raises:
             Fell: where a block is not on the table any more.
         """
-        lost = fallen_off(self.world.poses())
+        lost = fallen_off(self.performer.look().blocks)
         if lost:
             raise Fell(f"block {lost[0]!r} fell off the table")
         return self.performer.observe()
@@ -264,7 +288,7 @@ class Executor:
         if last is not None and last.outcome in ("no motion", "slip", "IK", "out of reach"):
             self.recovery.clear(action_from_list(list(last.action), "episode"))
         state = self.performer.observe()
-        lost = fallen_off(self.world.poses())
+        lost = fallen_off(self.performer.look().blocks)
         if lost or self.performer.hand is not None or NOWHERE in state.stations.values():
             return None
         remaining = observed_instance(self.instance, state)
@@ -323,6 +347,8 @@ class Executor:
                 stations={k: None if v == NOWHERE else v for k, v in final.stations.items()},
             ),
             actions=rows,
+            noise={kind: amount for kind, amount in asdict(self.tabletop.noise).items() if amount},
+            speed=(self.tabletop.velocity, self.tabletop.acceleration),
         )
 
 

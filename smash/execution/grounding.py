@@ -11,8 +11,10 @@ So is a task that begins where such a one ends, which nobody knows yet. All othe
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+
+import numpy as np
 
 from smash.execution.actions.arm_motions import ArmMotions, Segment
 from smash.execution.actions.grasps import CENTRED, Grasp
@@ -70,10 +72,12 @@ class Grounder:
 
     Args:
         arm: Plans the motions of one action.
+        astray: How far beside its target the hand puts a block down, drawn for each way down: shape (2,) [m].
     """
 
-    def __init__(self, arm: ArmMotions) -> None:
+    def __init__(self, arm: ArmMotions, astray: Callable[[], Vector] | None = None) -> None:
         self.arm = arm
+        self._astray = astray
         self.pick_and_place = PickAndPlace(arm)
 
     def ground(self, actions: Sequence[Action], law: Law, where: Geometry, joints: Vector) -> list[Task]:
@@ -127,8 +131,18 @@ class Grounder:
         """Of an action that begins nobody knows where: of a place the way down, of others nothing."""
         if not isinstance(action, Place):
             return Task(action, None)
+        return Task(action, None, self._landing(action, state, where, last, grasp))
+
+    def _landing(self, action: Place, state: State, where: Geometry, last: Vector, grasp: Grasp) -> Approach:
+        """The way down to a place, which may lead beside it without the executor's knowing.
+
+        Raises:
+            NoIk, NoMotion: where there is none.
+        """
         stand = self.stand(action.target, state, where)
-        return Task(action, None, self.pick_and_place.landing(last, action.block, stand, self.arm.around(where), grasp))
+        if self._astray is not None:
+            stand = BlockPose(stand.position + np.append(self._astray(), 0.0), stand.rotation)
+        return self.pick_and_place.landing(last, action.block, stand, self.arm.around(where), grasp)
 
     @staticmethod
     def _among_landed(action: Action, where: Geometry) -> bool:
@@ -172,10 +186,9 @@ class Grounder:
                 pose, scene = where.blocks[block], self.arm.around(where)
                 segments, grasp = self.pick_and_place.pick(joints, block, pose, scene)
                 return Task(action, segments, anchor=pose.position, grasp=grasp)
-            case Place(block, target):
-                scene, stand = self.arm.around(where), self.stand(target, state, where)
-                way = approach or self.pick_and_place.landing(joints, block, stand, scene, grasp)
-                return Task(action, self.pick_and_place.place(joints, block, way, scene), way)
+            case Place(block, _):
+                way = approach or self._landing(action, state, where, joints, grasp)
+                return Task(action, self.pick_and_place.place(joints, block, way, self.arm.around(where)), way)
             case Aggregating():
                 motion = MOTIONS.get(type(action))
                 if motion is None:

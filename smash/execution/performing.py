@@ -15,21 +15,30 @@ from smash.execution.actions.arm_motions import OPEN_SECONDS, OPENINGS, Grip, Se
 from smash.execution.actions.grasps import CENTRED
 from smash.execution.actions.pick_and_place import Approach
 from smash.execution.actions.registry import MOTIONS
-from smash.execution.errors import OutOfReach, Slip
+from smash.execution.errors import Blind, OutOfReach, Slip
 from smash.execution.grounding import Grounder, Task
 from smash.execution.physics.world import World
 from smash.execution.policy import Policy
 from smash.execution.readback import read_state
 from smash.execution.scene.geometry import Geometry
+from smash.execution.sight import MEMORY, Sight
 from smash.execution.stopwatch import Stopwatch
 from smash.motion.errors import NoIk
 from smash.motion.move import Move
+from smash.motion.robot import MAX_OPENING
 from smash.problem.errors import ExecutionFailure
 from smash.problem.model import TABLE, Aggregating, Pick, Place, State
 from smash.records.episodes import Performed
 
 GRASPED_WITHIN = 0.5
 """A held block's centre is within this share of its side of the tool."""
+HELD_OPENING = 0.25
+"""Where blocks are not seen exactly, the fingers tell: they stand this share of a side or more from the middle."""
+SURE = 3.0
+"""A block is taken to be no further from where it is seen than so many standard deviations."""
+MOST_LOOKS = 25
+LOOK_SECONDS = 1 / 30
+"""From one look to the next, where one is not enough [s]."""
 MOVED = 0.004
 """A block this far from where a motion was planned for [m] needs a new one."""
 SCENE_ALLOWANCE = 0.006
@@ -48,6 +57,7 @@ class Performer:
         grounder: Plans motions.
         table: The slots of locations and stations.
         policy: What to do about failures.
+        sight: Sees where the blocks are.
 
     Attributes:
         hand: The block between the fingers, or none.
@@ -55,8 +65,9 @@ class Performer:
         retries: How many picks were tried again.
     """
 
-    def __init__(self, world: World, grounder: Grounder, table: Geometry, policy: Policy) -> None:
+    def __init__(self, world: World, grounder: Grounder, table: Geometry, policy: Policy, sight: Sight) -> None:
         self.world = world
+        self.sight = sight
         self.grounder = grounder
         self.table = table
         self.policy = policy
@@ -66,12 +77,44 @@ class Performer:
         self.retries = 0
 
     def observe(self) -> State:
-        """The law's state in the scene as it is."""
-        return read_state(self.look(), self.world.tabletop, self.hand)
+        """The law's state in the scene as it is seen."""
+        tabletop = self.world.tabletop
+        return read_state(self.look(), tabletop, self.hand, tabletop.noise)
+
+    def truth(self) -> State:
+        """The law's state in the scene as it is, which the executor does not know."""
+        where = self.table.seen(self.world.poses(), self.world.carriers())
+        return read_state(where, self.world.tabletop, self.hand)
 
     def look(self) -> Geometry:
-        """Where things are."""
-        return self.table.seen(self.world.poses(), self.world.carriers())
+        """Where things are, as far as it can be seen."""
+        return self.table.seen(self.sight.blocks(), self.world.carriers())
+
+    def look_around(self) -> None:
+        """Look for a while, where one look is not exact."""
+        if not self.sight.exact:
+            for _ in range(MEMORY):
+                self.look()
+                self.world.wait(LOOK_SECONDS)
+
+    def study(self, block: str) -> None:
+        """Look until a block is known well enough for the open hand to come down around it.
+
+        Raises:
+            Blind: where more looks would not do.
+        """
+        if self.sight.exact:
+            return
+        most = MAX_OPENING - self.side / 2
+        for _ in range(MOST_LOOKS):
+            self.look()
+            if SURE * self.sight.spread(block) <= OPENINGS[0]:
+                return
+            self.world.wait(LOOK_SECONDS)
+        beside = SURE * self.sight.spread(block)
+        if beside > most:
+            room = f"the open hand leaves {most * 1e3:.1f} mm"
+            raise Blind(f"block {block!r} may lie {beside * 1e3:.1f} mm beside where it is seen; {room}")
 
     def perform(self, task: Task, row: Performed, state: State) -> None:
         """Perform an action, a pick several times where the block slips.
@@ -97,6 +140,8 @@ class Performer:
                 self.world.settle()
 
     def _try(self, task: Task, row: Performed, state: State) -> None:
+        if isinstance(task.action, Pick):
+            self.study(task.action.block)
         if task.segments is None or not self._usable(task, state):
             row.repaired = row.repaired or task.segments is not None
             task = self._planned(task, state, row)
@@ -188,8 +233,9 @@ class Performer:
 
     def _require_grasp(self, block: str) -> None:
         """Raise `Slip`, the hand opened, unless the block is between the fingers."""
-        away = float(np.linalg.norm(self.world.pose(block).position - self.world.tool_position()))
-        if away < GRASPED_WITHIN * self.side:
+        away = float(np.linalg.norm(self.look().blocks[block].position - self.world.tool_position()))
+        holds = self.world.finger_opening() > HELD_OPENING * self.side
+        if away < GRASPED_WITHIN * self.side if self.sight.exact else holds:
             return
         self.world.grip(self.side / 2 + OPENINGS[0], OPEN_SECONDS)
         raise Slip(f"block {block!r} is {away * 100:.1f} cm from the fingers after the grasp")

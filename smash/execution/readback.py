@@ -7,12 +7,14 @@ from math import pi
 
 from smash.execution.scene.block_pose import BlockPose
 from smash.execution.scene.geometry import Geometry
-from smash.execution.scene.tabletop import Slot, Tabletop
+from smash.execution.scene.tabletop import Noise, Slot, Tabletop
 from smash.execution.scene.tray import heading
 from smash.problem.model import State
 
 PLACED_WITHIN = 1 / 3
 """A block stands at a location if its centre is within this share of its side of the slot's middle, ..."""
+MOST_WITHIN = 1 / 2
+"""... (this one at most, where it is not seen exactly)"""
 LEVEL_WITHIN = 0.2
 """... within this share of its level's height, ..."""
 LARGEST_TILT = 0.1
@@ -21,11 +23,12 @@ TRAY_WITHIN = 0.02
 """A carrier stands at a station if its middle is this near to it [m] ..."""
 LARGEST_TURN = 0.15
 """... and it is turned from it by no more than this [rad]."""
+EXACT = Noise()
 NOWHERE = "\uffff"
 """Where a carrier is that stands at no station: not a character, hence nobody's name."""
 
 
-def read_state(where: Geometry, tabletop: Tabletop, hand: str | None = None) -> State:
+def read_state(where: Geometry, tabletop: Tabletop, hand: str | None = None, noise: Noise = EXACT) -> State:
     """The law's state in the observed scene.
 
     A location holds the unbroken column of upright blocks over its middle, a carrier the blocks that stand in its
@@ -35,14 +38,14 @@ def read_state(where: Geometry, tabletop: Tabletop, hand: str | None = None) -> 
         where: Settled poses of all blocks and carriers.
         tabletop: The scene.
         hand: The block between the fingers, which stands nowhere.
+        noise: How wrong the poses may be: a block may be seen further off a location that it stands on.
     """
     side = tabletop.side
+    within = min(PLACED_WITHIN * side + 2 * noise.pose + 2 * noise.camera, MOST_WITHIN * side)
     loose = {name: pose for name, pose in where.blocks.items() if name != hand}
     piles: dict[str, list[str]] = {}
     for location, slot in where.slots.items():
-        column = sorted(
-            (float(pose.position[2]), name) for name, pose in loose.items() if _over(pose, slot, PLACED_WITHIN * side)
-        )
+        column = sorted((float(pose.position[2]), name) for name, pose in loose.items() if _over(pose, slot, within))
         pile: list[str] = []
         for height, name in column:
             if abs(height / side - (len(pile) + 0.5)) > LEVEL_WITHIN:

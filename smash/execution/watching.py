@@ -25,9 +25,11 @@ class Watch:
 
     Args:
         poses: Of all blocks at the start.
+        least: A block that has moved further is named [m].
     """
 
-    def __init__(self, poses: Mapping[str, BlockPose]) -> None:
+    def __init__(self, poses: Mapping[str, BlockPose], least: float = DISTURBED) -> None:
+        self._least = least
         self._places = {block: pose.position for block, pose in poses.items()}
 
     def disturbed(self, poses: Mapping[str, BlockPose], part: Collection[str]) -> dict[str, float]:
@@ -38,7 +40,7 @@ class Watch:
             part: What the action is about.
         """
         away = {block: _distance(pose.position, self._places[block]) for block, pose in poses.items()}
-        found = {block: far for block, far in away.items() if far > DISTURBED and block not in part}
+        found = {block: far for block, far in away.items() if far > self._least and block not in part}
         self._places |= {block: poses[block].position for block in (*found, *part)}
         return found
 

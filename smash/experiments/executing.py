@@ -23,6 +23,8 @@ def execute(
     seed: int = 0,
     replan: bool = True,
     scene: str | os.PathLike[str] | Tabletop | None = None,
+    noise: str | None = None,
+    pace: float | None = None,
     engine: str | None = None,
     robot: str | None = None,
 ) -> Episode:
@@ -38,6 +40,8 @@ def execute(
         replan: plan anew from what is observed where an action cannot be done, with the plan's own planner (else
             `greedy`); False is the paper's open pipeline, where the first failure ends the episode.
         scene: the path of a scene file, or a scene (None: the built-in one).
+        noise: what is not known exactly, as in `"pose=3mm,yaw=2deg,friction=10%"` (None: what the scene says).
+        pace: share of the arm's velocity and acceleration limits that motions use (None: what the scene says).
         engine: None; PyBullet is the one that there is.
         robot: None; the Panda is the one that there is.
 
@@ -55,4 +59,5 @@ def execute(
             raise SmashError(f"{what}: {asked!r} is not allowed; there is no choice of one, None is allowed")
     whole_number("seed", seed, 0, 2**31 - 1)
     problem = given_instance(instance)
-    return executor_of(problem, given_plan(plan, problem), seed=seed, replan=replan, scene=scene).run()
+    asked_plan = given_plan(plan, problem)
+    return executor_of(problem, asked_plan, seed=seed, replan=replan, scene=scene, noise=noise, pace=pace).run()

@@ -93,7 +93,12 @@ class Arrangement(msgspec.Struct, kw_only=True):
 
 
 class Episode(msgspec.Struct, kw_only=True):
-    """An executed plan."""
+    """An executed plan.
+
+    Attributes:
+        noise: What was not known exactly, and how much of it [m, rad, share]; what is left out was.
+        speed: Shares of the arm's velocity and acceleration limits that motions used; None in older records.
+    """
 
     format: str = EPISODE_FORMAT
     instance: str
@@ -112,6 +117,8 @@ class Episode(msgspec.Struct, kw_only=True):
     times: Totals
     final: Arrangement
     actions: list[Performed]
+    noise: dict[str, float] = {}
+    speed: tuple[float, float] | None = None
 
     def without_measured_times(self) -> dict[str, Any]:
         """The part that the seed determines: equal for equal arguments."""

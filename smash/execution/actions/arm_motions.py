@@ -114,8 +114,17 @@ class ArmMotions:
 
     @property
     def openings(self) -> tuple[float, ...]:
-        """How far the fingers are open around a block, from the middle [m], the widest first."""
-        return tuple(min(MAX_OPENING, self.side / 2 + room) for room in OPENINGS)
+        """How far the fingers are open around a block, from the middle [m], the widest first.
+
+        Where blocks are not exactly where they are seen, that is as wide as the hand opens.
+        """
+        rooms = (MAX_OPENING, *OPENINGS) if self.tabletop.noise.sees else OPENINGS
+        return tuple(min(MAX_OPENING, self.side / 2 + room) for room in rooms)
+
+    @property
+    def release_height(self) -> float:
+        """What the hand holds is let go this far above what carries it [m], whose height it does not know exactly."""
+        return RELEASE_HEIGHT + 2 * self.tabletop.noise.size
 
     def transfer(
         self, start: Vector, goal: Vector, scene: Scene, hand: HandState, ignored: frozenset[BodyName] = frozenset()

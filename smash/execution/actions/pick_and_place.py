@@ -12,7 +12,6 @@ from smash.execution.actions.arm_motions import (
     CLOSE_SECONDS,
     ENOUGH_CLEARANCE,
     OPEN_SECONDS,
-    RELEASE_HEIGHT,
     ArmMotions,
     Grip,
     Segment,
@@ -120,7 +119,7 @@ class PickAndPlace:
         Raises:
             NoIk, NoMotion: where there is none.
         """
-        point = target.position + np.array([0.0, 0.0, RELEASE_HEIGHT])
+        point = target.position + np.array([0.0, 0.0, self._arm.release_height])
         near = scene.without([block])
         for room in (ROOM, CONTACT_MARGIN):
             for approach in self._approaches(start, point, target.yaw, near, grasp, room, True):

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from smash.execution.physics.simulated_robot import simulated_panda
 from smash.execution.physics.window import furnish, require_display, words_to_stderr
 from smash.execution.scene.block_pose import BlockPose
+from smash.execution.scene.noise import Made
 from smash.execution.scene.tabletop import Tabletop
 from smash.motion.obstacles import BodyName
 from smash.motion.timing import Trajectory
@@ -57,11 +58,13 @@ class World:
         ready: NDArray[np.float64],
         *,
         carriers: Mapping[str, BlockPose] | None = None,
+        made: Mapping[str, Made] | None = None,
         gui: bool = False,
         on_frame: Frame | None = None,
         frame_interval: float = 1 / 25,
     ) -> None:
         self.tabletop = tabletop
+        self._made = made or {}
         self.time = 0.0
         self.opening = 0.04
         self._gui = gui
@@ -129,14 +132,18 @@ class World:
         # The base is bolted to the table; its contacts would cost more than all blocks'.
         for link in (BASE, 0):
             c.setCollisionFilterPair(self.robot, self.table, link, -1, 0)
+        alike = Made(side, self.tabletop.mass, friction.block)
         box = c.createCollisionShape(c.GEOM_BOX, halfExtents=[side / 2] * 3)
         self.bodies: dict[str, int] = {}
         for name, pose in blocks.items():
-            body = c.createMultiBody(self.tabletop.mass, box, -1, pose.position.tolist(), quaternion_of(pose.rotation))
+            made, shape = self._made.get(name, alike), box
+            if made.side != side:
+                shape = c.createCollisionShape(c.GEOM_BOX, halfExtents=[made.side / 2] * 3)
+            body = c.createMultiBody(made.mass, shape, -1, pose.position.tolist(), quaternion_of(pose.rotation))
             c.changeDynamics(
                 body,
                 -1,
-                lateralFriction=friction.block,
+                lateralFriction=made.friction,
                 activationState=c.ACTIVATION_STATE_ENABLE_SLEEPING,
                 sleepThreshold=ASLEEP,
             )
@@ -276,6 +283,10 @@ class World:
     def commanded(self) -> NDArray[np.float64]:
         """The joint positions that the arm was last sent to [rad], shape (7,)."""
         return self._target.copy()
+
+    def finger_opening(self) -> float:
+        """Measured distance of a finger from the middle [m], the mean of both."""
+        return float(np.mean([state[0] for state in self.client.getJointStates(self.robot, FINGERS)]))
 
     def tool_position(self) -> NDArray[np.float64]:
         """Measured position of the tool frame [m], shape (3,)."""

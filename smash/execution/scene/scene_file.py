@@ -14,9 +14,10 @@ from typing import Annotated, Any, Literal, cast
 
 import msgspec
 
-from smash.execution.scene.tabletop import DIRECTIONS, Friction, Slot, Tabletop
+from smash.execution.scene.noise import checked_noise, parse_noise
+from smash.execution.scene.tabletop import DIRECTIONS, Friction, Noise, Slot, Tabletop
 from smash.execution.scene.tray import Tray
-from smash.problem.errors import MalformedFile
+from smash.problem.errors import MalformedFile, SmashError
 from smash.problem.files.documents import check_format, convert, parse_json, parse_toml, read_bytes
 
 SCENE_FORMAT = "smash-scene/1"
@@ -40,6 +41,16 @@ class _FrictionFile(msgspec.Struct, forbid_unknown_fields=True):
 class _SpeedFile(msgspec.Struct, forbid_unknown_fields=True):
     velocity: _Share = 0.5
     acceleration: _Share = 0.25
+
+
+class _NoiseFile(msgspec.Struct, forbid_unknown_fields=True):
+    pose: float = 0.0
+    yaw: float = 0.0
+    camera: float = 0.0
+    placement: float = 0.0
+    friction: float = 0.0
+    mass: float = 0.0
+    size: float = 0.0
 
 
 class _BufferFile(msgspec.Struct, forbid_unknown_fields=True):
@@ -71,6 +82,7 @@ class _SceneFile(msgspec.Struct, forbid_unknown_fields=True):
     buffers: list[_BufferFile] = []
     tray: _TrayFile = msgspec.field(default_factory=_TrayFile)
     stations: list[_BufferFile] = []
+    noise: _NoiseFile = msgspec.field(default_factory=_NoiseFile)
 
 
 def read_scene(path: str | os.PathLike[str]) -> Tabletop:
@@ -116,12 +128,50 @@ def scene_from_document(document: Any, where: str = "scene") -> Tabletop:
         acceleration=file.speed.acceleration,
         stacks=tuple(Slot(s.radius, radians(s.angle), tuple(s.topple)) for s in file.stacks),
         buffers=tuple(Slot(b.radius, radians(b.angle)) for b in file.buffers),
+        noise=_noise(file.noise, where),
     )
     if file.stations:
         tray, stations = Tray(file.block.side, **msgspec.to_builtins(file.tray)), file.stations
         table = replace(table, tray=tray, stations=tuple(Slot(s.radius, radians(s.angle)) for s in stations))
     _refuse_overlap(table, where)
     return table
+
+
+def _noise(file: _NoiseFile, where: str) -> Noise:
+    """The noise of a file, its yaw in degrees there.
+
+    Raises:
+        MalformedFile: where an amount is out of its limits.
+    """
+    amounts = {**msgspec.to_builtins(file), "yaw": radians(file.yaw)}
+    try:
+        return checked_noise(Noise(**amounts), "`noise`")
+    except SmashError as error:
+        raise MalformedFile(where, str(error)) from None
+
+
+def scene_of(
+    scene: str | os.PathLike[str] | Tabletop | None = None, noise: str | None = None, pace: float | None = None
+) -> Tabletop:
+    """Return a scene: the built-in one where none is given, with another noise and pace where these are.
+
+    Args:
+        scene: a scene, or the path of its file.
+        noise: as `parse_noise` reads it; it takes the place of all of the scene's own.
+        pace: share of the arm's velocity and acceleration limits that motions use.
+
+    Raises:
+        SmashError: with one line, where one of them is not allowed.
+    """
+    if not isinstance(scene, Tabletop):
+        scene = default_scene() if scene is None else read_scene(scene)
+    if noise is not None:
+        scene = replace(scene, noise=parse_noise(noise))
+    if pace is not None:
+        if not 0.0 < pace <= 1.0:
+            raise SmashError(f"pace: {pace} is not allowed; above 0, up to 1")
+        scene = replace(scene, velocity=pace, acceleration=pace)
+    return scene
 
 
 def _parse(content: bytes, where: str) -> Any:

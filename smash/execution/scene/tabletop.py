@@ -7,7 +7,7 @@ frame (the stack's frame of the paper's pre-smash pose) has x radially outward a
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from hashlib import sha256
 from math import cos, hypot, pi, sin
 
@@ -89,6 +89,35 @@ class Friction:
 
 
 @dataclass(frozen=True, slots=True)
+class Noise:
+    """What an episode does not know exactly (`smash.execution.scene.noise` draws it); nothing where all are 0.
+
+    Attributes:
+        pose: Of a block's seen place, along each axis, anew at every look: standard deviation [m].
+        yaw: Of its seen yaw, anew at every look: standard deviation [rad].
+        camera: Of all seen places alike, along x and y, once an episode: standard deviation [m].
+        placement: Of where a block stands, at the start and where the hand puts it down: standard deviation along x
+            and y [m].
+        friction: Of the coefficients of each block, the table and the fingers: standard deviation, share of them.
+        mass: Of each block's mass: standard deviation, share of it.
+        size: Tolerance of each block's side: so much larger or smaller at most, evenly spread [m].
+    """
+
+    pose: float = 0.0
+    yaw: float = 0.0
+    camera: float = 0.0
+    placement: float = 0.0
+    friction: float = 0.0
+    mass: float = 0.0
+    size: float = 0.0
+
+    @property
+    def sees(self) -> bool:
+        """Whether what is seen is wrong."""
+        return bool(self.pose or self.yaw or self.camera)
+
+
+@dataclass(frozen=True, slots=True)
 class Tabletop:
     """A scene as its file describes it.
 
@@ -103,6 +132,7 @@ class Tabletop:
         buffers: Slots of buffers.
         tray: What carriers are; none in a scene without stations.
         stations: Slots that trays can stand at, their length across the bearing.
+        noise: What an episode does not know exactly.
     """
 
     name: str
@@ -115,6 +145,7 @@ class Tabletop:
     buffers: tuple[Slot, ...]
     tray: Tray | None = None
     stations: tuple[Slot, ...] = ()
+    noise: Noise = field(default=Noise(), repr=False)
 
     @property
     def slots(self) -> tuple[Slot, ...]:
@@ -124,7 +155,8 @@ class Tabletop:
     @property
     def fingerprint(self) -> str:
         """Eight characters that tell this scene from others, whatever they are called."""
-        return sha256(repr(self).encode()).hexdigest()[:8]
+        noise = "" if self.noise == Noise() else repr(self.noise)
+        return sha256(f"{self!r}{noise}".encode()).hexdigest()[:8]
 
     @property
     def highest(self) -> int:

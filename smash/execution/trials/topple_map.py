@@ -22,8 +22,10 @@ from smash.execution.policy import OPEN
 from smash.execution.readback import read_state
 from smash.execution.scene.block_pose import BlockPose
 from smash.execution.scene.geometry import Geometry
+from smash.execution.scene.noise import Chance
 from smash.execution.scene.start import starting_poses
 from smash.execution.scene.tabletop import Slot, Tabletop
+from smash.execution.sight import Sight
 from smash.execution.trials.estimates import Estimates, Rate
 from smash.motion.poses import Vector
 from smash.motion.robot import READY
@@ -44,16 +46,17 @@ def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: i
         name="trial", blocks=names, stacks=[location], start={location: names}, goal=PositionsGoal({})
     )
     slots = {location: slot}
-    poses = starting_poses(instance, slots, tabletop, np.random.default_rng(seed))
+    chance = Chance(tabletop, instance, seed)
+    poses = chance.at_start(starting_poses(instance, slots, tabletop, np.random.default_rng(seed)))
     arm = ArmMotions(tabletop, seed)
     action = Topple(location, height)
     blank = Trial(
         scene=tabletop.name, layout=tabletop.fingerprint, stack=stack, height=height, falling=falling, seed=seed
     )
-    with World(tabletop, poses, READY) as world:
+    with World(chance.scene(), poses, READY, made=chance.made) as world:
         world.settle()
         before = world.poses()
-        performer = Performer(world, Grounder(arm), Geometry(slots), OPEN)
+        performer = Performer(world, Grounder(arm), Geometry(slots), OPEN, Sight(world, chance))
         try:
             performer.perform(Task(action, None), Performed(step=1, action=[], origin="plan"), performer.observe())
         except ExecutionFailure as failure:

@@ -37,12 +37,17 @@ class Asked(msgspec.Struct, frozen=True):
 
 
 def note_asked(
-    results: Path, seeds: int, policies: Sequence[str], scene: os.PathLike[str] | None, labels: Sequence[str]
+    results: Path,
+    seeds: int,
+    policies: Sequence[str],
+    scene: os.PathLike[str] | None,
+    labels: Sequence[str],
+    noise: str | None = None,
+    pace: float | None = None,
 ) -> None:
     """Add a question to those of a results directory; one that stands there already is not added again."""
     before = _questions(results) or []
-    name = None if scene is None else told_apart(scene)
-    question = Question(seeds, list(policies), name, list(labels))
+    question = Question(seeds, list(policies), told_apart(scene, noise, pace), list(labels))
     if question not in before:
         document = Asked("smash-episodes/1", [*before, question])
         text = msgspec.json.format(msgspec.json.encode(document), indent=1).decode()

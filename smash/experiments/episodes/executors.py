@@ -27,6 +27,8 @@ def executor_of(
     seed: int = 0,
     replan: bool = True,
     scene: str | os.PathLike[str] | Tabletop | None = None,
+    noise: str | None = None,
+    pace: float | None = None,
     replanner: str | None = None,
     budget: float = REPLAN_BUDGET,
     gui: bool = False,
@@ -41,6 +43,8 @@ def executor_of(
         seed: of the blocks' start poses, and for planners that draw.
         replan: whether to plan anew where an action cannot be done.
         scene: the path of a scene file, or a scene (None: the built-in one).
+        noise: what is not known exactly, as in `pose=3mm,yaw=2deg` (None: what the scene says).
+        pace: share of the arm's velocity and acceleration limits that motions use (None: what the scene says).
         replanner: planner to replan with (None: the plan's own); `greedy` where nobody is called so.
         budget: wall time of each replanning [s].
         gui: show PyBullet's window.
@@ -57,16 +61,13 @@ def executor_of(
         raise RefusedPlan(f"the plan for {instance.name!r}: {verdict}")
     from smash.execution.executor import Executor
     from smash.execution.policy import OPEN
-    from smash.execution.scene.scene_file import default_scene, read_scene
-    from smash.execution.scene.tabletop import Tabletop
+    from smash.execution.scene.scene_file import scene_of
     from smash.experiments.episodes.replanning import replanner as replanner_by
 
-    if not isinstance(scene, Tabletop):
-        scene = default_scene() if scene is None else read_scene(scene)
     return Executor(
         instance,
         plan,
-        scene,
+        scene_of(scene, noise, pace),
         seed=seed,
         policy=None if replan else OPEN,
         replanner=replanner_by(replanner or plan.planner, budget, seed) if replan else None,

@@ -26,6 +26,8 @@ def carry_out(run: EpisodeRun) -> Episode:
         seed=run.seed,
         replan=run.policy != "open",
         scene=run.scene,
+        noise=run.noise,
+        pace=run.pace,
         on_frame=capture.frame,
     )
     episode = executor.run()

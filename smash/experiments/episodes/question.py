@@ -16,6 +16,8 @@ class EpisodeRun(msgspec.Struct, frozen=True):
         policy: Of `smash.experiments.episodes.series.POLICIES`.
         scene: The scene file, or None for the built-in scene.
         told: What `told_apart` says of the scene, or None for the built-in scene.
+        noise: In place of the scene's own, or None.
+        pace: The same.
         replay: The page to write, or None.
     """
 
@@ -25,6 +27,8 @@ class EpisodeRun(msgspec.Struct, frozen=True):
     scene: str | None
     told: str | None = None
     replay: str | None = None
+    noise: str | None = None
+    pace: float | None = None
 
     @property
     def key(self) -> str:

@@ -34,11 +34,30 @@ POLICIES = ("replan", "open")
 """`replan`: the executor repairs, retries and replans; `open`: the paper's open pipeline."""
 
 
-def told_apart(scene: str | os.PathLike[str]) -> str:
-    """Return the name of a scene file with what tells its content from any other."""
-    from smash.execution.scene.scene_file import read_scene
+def told_apart(scene: str | os.PathLike[str] | None, noise: str | None = None, pace: float | None = None) -> str | None:
+    """Return the name of a scene with what tells it from any other; None for the built-in scene as it is.
 
-    return f"{Path(scene).stem}-{read_scene(scene).fingerprint}"
+    Args:
+        scene: Its file, or None for the built-in scene.
+        noise: In place of its own.
+        pace: The same.
+    """
+    from smash.execution.scene.scene_file import scene_of
+
+    name = scene_name(scene, noise, pace)
+    return None if name is None else f"{name}-{scene_of(scene, noise, pace).fingerprint}"
+
+
+def scene_name(scene: str | os.PathLike[str] | None, noise: str | None = None, pace: float | None = None) -> str | None:
+    """Return what records call a scene, with the noise and the pace that take the place of its own."""
+    if scene is None and noise is None and pace is None:
+        return None
+    from smash.execution.scene.noise import noise_words, parse_noise
+
+    words = ["default" if scene is None else Path(scene).stem]
+    words += [] if noise is None else [noise_words(parse_noise(noise)) or "exact"]
+    words += [] if pace is None else [f"pace={pace:g}"]
+    return " ".join(words)
 
 
 def episode_runs(
@@ -49,6 +68,8 @@ def episode_runs(
     labels: Sequence[str] = (),
     replays: bool = False,
     told: str | None = None,
+    noise: str | None = None,
+    pace: float | None = None,
 ) -> list[EpisodeRun]:
     """Return the episodes of all plans that a sweep has recorded, seed by seed, so that a part is a fair sample.
 
@@ -60,6 +81,8 @@ def episode_runs(
         labels: Only plans of planners so labelled; all where there are none.
         replays: Write a replay page of each plan's first episode beside the records.
         told: What tells the scene from others; found out where it is not given.
+        noise: In place of the scene's own.
+        pace: The same.
 
     Raises:
         MalformedFile: where the records are damaged.
@@ -73,9 +96,13 @@ def episode_runs(
         if label not in known:
             raise SmashError(f"{reading.path}: no plan by {label!r}; there are plans by {', '.join(sorted(known))}")
     plans = [record for record in plans if not labels or record.label in labels]
-    if told is None and scene is not None:
-        told = told_apart(scene)
-    runs = [EpisodeRun(record, seed, policy, scene, told) for seed in seeds for record in plans for policy in policies]
+    told = told or told_apart(scene, noise, pace)
+    runs = [
+        EpisodeRun(record, seed, policy, scene, told, noise=noise, pace=pace)
+        for seed in seeds
+        for record in plans
+        for policy in policies
+    ]
     if not replays:
         return runs
     replace = msgspec.structs.replace
@@ -143,7 +170,7 @@ def _record(
         variant=plan.variant,
         policy=run.policy,
         seed=run.seed,
-        scene=None if run.scene is None else Path(run.scene).stem,
+        scene=scene_name(run.scene, run.noise, run.pace),
         blocks=len(instance.blocks),
         depth=target_depth(instance),
         cost=plan.cost,
