@@ -7,7 +7,7 @@ SCENES := friction-0.10 friction-0.30 friction-0.40 friction-0.50
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help install install-all clean test test-slow test-timing lint ci suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full friction topple-map scoop reproduce reproduce-full results physics
+.PHONY: help install install-all clean test test-slow test-timing lint ci suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full friction robustness robustness-full paces paces-full topple-map scoop reproduce reproduce-full results physics
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -86,6 +86,35 @@ friction: needs-analysis-execution physics ## the same plans under other frictio
 	  $(BIN)/python -m smash topple-map --highest-cut 3 --jobs 2 --scene experiments/scenes/$$scene.toml --out runs/friction/$$scene \
 	    || exit 1; done
 	$(BIN)/python -m smash_analysis.execution_sweeps runs/friction $(addprefix runs/friction/,default $(SCENES))
+
+NOISES := pose=1mm pose=3mm pose=5mm yaw=3deg yaw=6deg camera=2mm camera=4mm placement=2mm placement=4mm friction=10% friction=25% mass=25% mass=50% size=0.5mm size=1mm
+MORE_NOISES := pose=8mm pose=12mm yaw=10deg camera=6mm placement=6mm friction=40% size=2mm
+
+robustness: needs-analysis-execution physics ## the same plans under noise of each kind: success and time, table and curves (about 20 minutes on 2 cores; it can be resumed)
+	$(BIN)/python -m smash sweep experiments/robustness.toml --out runs/robustness
+	$(BIN)/python -m smash episodes runs/robustness --jobs 2
+	$(BIN)/python -m smash episodes runs/robustness --jobs 2 $(addprefix --noise ,$(NOISES))
+	$(BIN)/python -m smash_analysis.robustness runs/robustness
+
+robustness-full: needs-analysis-execution physics ## the same on 20 instances of 9 blocks, with topple and without, three seeds, more amounts (hours, said first; it can be resumed)
+	$(BIN)/python -m smash sweep experiments/robustness-full.toml --out runs/robustness-full
+	$(BIN)/python -m smash episodes runs/robustness-full --seeds 3 --jobs 2 $(addprefix --noise ,$(NOISES) $(MORE_NOISES)) --dry-run
+	$(BIN)/python -m smash episodes runs/robustness-full --seeds 3 --jobs 2
+	$(BIN)/python -m smash episodes runs/robustness-full --seeds 3 --jobs 2 $(addprefix --noise ,$(NOISES) $(MORE_NOISES))
+	$(BIN)/python -m smash_analysis.robustness runs/robustness-full
+
+paces: needs-analysis-execution physics ## what topple saves at 0.1 and 0.25 of the arm's limits, as MoveIt moves it, beside ours (about 20 minutes on 2 cores; it can be resumed)
+	$(BIN)/python -m smash sweep experiments/paces.toml --out runs/paces
+	$(BIN)/python -m smash episodes runs/paces --jobs 2
+	$(BIN)/python -m smash episodes runs/paces --jobs 2 --pace 0.1 --pace 0.25
+	$(BIN)/python -m smash_analysis.paces runs/paces
+
+paces-full: needs-analysis-execution physics ## the same on 20 instances a setting (hours, said first; it can be resumed)
+	$(BIN)/python -m smash sweep experiments/paces-full.toml --out runs/paces-full
+	$(BIN)/python -m smash episodes runs/paces-full --jobs 2 --pace 0.1 --pace 0.25 --dry-run
+	$(BIN)/python -m smash episodes runs/paces-full --jobs 2
+	$(BIN)/python -m smash episodes runs/paces-full --jobs 2 --pace 0.1 --pace 0.25
+	$(BIN)/python -m smash_analysis.paces runs/paces-full
 
 topple-map: needs-analysis-execution physics ## where toppled blocks land, per cut height and number (minutes)
 	$(BIN)/python -m smash topple-map --jobs 2 --out runs/topple-map

@@ -17,14 +17,16 @@ without_option = click.option(
     help="An aggregating action of the instance that plans may not use; may be given twice.",
 )
 
+PACE = click.FloatRange(0.0, 1.0, min_open=True)
+"""The type of options that take a share of the arm's limits."""
 noise_option = click.option(
     "--noise",
     metavar="KIND=AMOUNT,…",
-    help="What is not known exactly, of pose=3mm, yaw=2deg, camera=2mm, placement=2mm, friction=10%, mass=20%, size=1mm.",
+    help="What is not known exactly: pose=3mm, yaw=2deg, camera=2mm, placement=2mm, friction=10%, mass=20%, size=1mm.",
 )
 pace_option = click.option(
     "--pace",
-    type=click.FloatRange(0.0, 1.0, min_open=True),
+    type=PACE,
     metavar="SHARE",
     help="Of the arm's velocity and acceleration limits, for motions; MoveIt's default is 0.1.",
 )

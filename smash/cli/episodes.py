@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 
 import click
 
-from smash.cli.choices import noise_option, pace_option
+from smash.cli.choices import PACE
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.episodes.asked import note_asked
 from smash.experiments.episodes.question import EpisodeRun
@@ -37,8 +38,14 @@ SECONDS_AN_EPISODE = 5.0
 )
 @click.option("--label", "labels", multiple=True, metavar="NAME", help="Only plans of this planner; repeatable.")
 @click.option("--scene", type=click.Path(path_type=Path), help="Scene file (default: the built-in scene).")
-@noise_option
-@pace_option
+@click.option(
+    "--noise",
+    "noises",
+    multiple=True,
+    metavar="KIND=AMOUNT,…",
+    help="As of `smash execute`; each is a scene of its own.",
+)
+@click.option("--pace", "paces", type=PACE, multiple=True, metavar="SHARE", help="The same.")
 @click.option("--replays", is_flag=True, help="Write a 3D replay of each plan's first episode to RESULTS/replays.")
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="At a time.")
 @click.option("--dry-run", is_flag=True, help="Say how many episodes are left and how long they take at a guess.")
@@ -48,8 +55,8 @@ def command(
     policies: tuple[str, ...],
     labels: tuple[str, ...],
     scene: Path | None,
-    noise: str | None,
-    pace: float | None,
+    noises: tuple[str, ...],
+    paces: tuple[float, ...],
     replays: bool,
     jobs: int,
     dry_run: bool,
@@ -62,11 +69,16 @@ def command(
     Examples:
       smash sweep experiments/tables-subset.toml --out runs/tables && smash episodes runs/tables --jobs 2
       smash episodes runs/tables --label smash --policy replan --policy open --seeds 3
-      smash episodes runs/tables --label smash --noise pose=3mm --pace 0.25
+      smash episodes runs/tables --label smash --noise pose=3mm --noise pose=5mm
     """
     require("smash episodes", *EXECUTION)
     file = None if scene is None else str(scene.resolve())
-    runs = episode_runs(results, range(seeds), policies, file, labels, replays, noise=noise, pace=pace)
+    changes = list(product(noises or (None,), paces or (None,)))
+    runs = [
+        run
+        for noise, pace in changes
+        for run in episode_runs(results, range(seeds), policies, file, labels, replays, noise=noise, pace=pace)
+    ]
     if replays:
         (results / REPLAYS).mkdir(exist_ok=True)
     with stopped_by_signals() as stop, Writer(results, EPISODES) as records:
@@ -80,7 +92,8 @@ def command(
             click.echo(f"{bare} recorded earlier have no replay: `smash execute --replay` makes one", err=True)
         if dry_run:
             return
-        note_asked(results, seeds, policies, scene, labels, noise, pace)
+        for noise, pace in changes:
+            note_asked(results, seeds, policies, scene, labels, noise, pace)
         done = 0
 
         def ended(run: EpisodeRun, record: EpisodeRecord) -> None:

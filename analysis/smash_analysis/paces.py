@@ -1,0 +1,99 @@
+"""`python -m smash_analysis.paces RESULTS`: what topple saves at other paces of the arm, beside the paper.
+
+RESULTS holds episodes of the same plans at several paces (`smash episodes RESULTS --pace SHARE`). The paper's arm moves
+at MoveIt's default, 0.1 of its limits; percentages are to be compared at one pace.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+
+from smash.records.files import EPISODES
+from smash_analysis import command
+from smash_analysis.execution_tables import failure_table, paired_table, told_episodes
+from smash_analysis.tables.believed import records_of
+from smash_analysis.tables.writing import SPREADS, markdown
+
+PACE = "pace"
+LEGEND = (
+    "Execution time saved by topple, paired by instance, at several paces: shares of the arm's velocity and "
+    "acceleration limits that motions use. Pushes have speeds of their own at every pace. MoveIt's default is "
+    f"0.1, 0.1. {SPREADS}"
+)
+
+
+def read_paces(results: Path) -> pd.DataFrame:
+    """Return `told_episodes` with their pace in words; older records, which do not say it, by their scene.
+
+    Raises:
+        MalformedFile: where there are no episodes, or they are damaged.
+    """
+    records = records_of(results, EPISODES)
+    speeds = [None if record.episode is None else record.episode.speed for record in records]
+    words = [
+        (record.scene or "default") if speed is None else f"{speed[0]:g}, {speed[1]:g}"
+        for record, speed in zip(records, speeds, strict=True)
+    ]
+    return told_episodes(records).assign(**{PACE: words})
+
+
+def pace_table(episodes: pd.DataFrame) -> pd.DataFrame:
+    """Return what topple saves, a row per problem size, setting and pace, and the seconds an action takes."""
+    tables = []
+    for pace, part in episodes.groupby(PACE, sort=True):
+        table = paired_table(part)
+        if len(table):
+            tables.append(table.assign(**{PACE: pace}))
+    if not tables:
+        return pd.DataFrame()
+    table = pd.concat(tables).sort_values(["benchmark", "blocks", "planner", "variant", "policy", PACE])
+    return table[["benchmark", "blocks", PACE, *(c for c in table.columns if c not in ("benchmark", "blocks", PACE))]]
+
+
+def action_table(episodes: pd.DataFrame) -> pd.DataFrame:
+    """Return the simulated seconds an action takes at each pace, over successful episodes."""
+    done = episodes[episodes["success"]]
+    each = (done["execution_seconds"] / done["actions_executed"]).rename("seconds an action")
+    means = each.groupby([done[PACE], done["variant"]]).agg(["mean", "size"])
+    return pd.DataFrame(
+        {
+            PACE: [pace for pace, _ in means.index],
+            "variant": [variant for _, variant in means.index],
+            "seconds an action": means["mean"].map("{:.2f}".format).tolist(),
+            "episodes": means["size"].tolist(),
+        }
+    )
+
+
+def make(results: Path, out: Path) -> list[Path]:
+    """Write `paces.md`; return the file in a list.
+
+    Raises:
+        MalformedFile: where there is nothing to report.
+    """
+    episodes = read_paces(results)
+    out.mkdir(parents=True, exist_ok=True)
+    saved, failed = pace_table(episodes), failure_table(episodes)
+    parts = [
+        "# Equal paces\n",
+        f"{len(episodes)} episodes. {LEGEND}\n",
+        markdown(saved) if len(saved) else "No pairs.\n",
+        "## Seconds an action\n",
+        markdown(action_table(episodes)),
+        "## Failures\n",
+        markdown(failed) if len(failed) else "None.\n",
+    ]
+    file = out / "paces.md"
+    file.write_text("\n".join(parts), encoding="utf-8")
+    return [file]
+
+
+def main() -> None:
+    """Make the tables and say where they are."""
+    command.run("paces", __doc__, make, "tables", "paces.md")
+
+
+if __name__ == "__main__":
+    main()
