@@ -24,7 +24,7 @@ from smash.problem.sets.open_instances import Shape, draw_instance
 
 BLOCKS = (50, 100, 200, 500, 1000, 2000)
 FEW = 3
-"""Buffers, and stacks are two more; many are as many buffers as blocks, and a stack for every ten."""
+"""Buffers, and stacks are one more; many are as many buffers as blocks, and a stack for every ten."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,7 @@ def stated() -> list[Stated]:
     return [
         Stated(blocks, stacks, buffers, topple, number)
         for blocks in BLOCKS
-        for stacks in (FEW + 2, blocks // 10)
+        for stacks in (FEW + 1, blocks // 10)
         for buffers, topple, count in ((FEW, False, 2), (blocks, False, 2), (FEW, True, 1))
         for number in range(count)
     ]
