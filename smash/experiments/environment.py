@@ -28,6 +28,7 @@ PACKAGES = (
     "ortools",
     "psutil",
     "pyscipopt",
+    "python-sat",
     "scipy",
     "unified-planning",
     "up-aries",

@@ -30,7 +30,10 @@ from smash.problem.model import Instance, PlanOptions
 from smash.problem.problem import Problem
 
 GREEDY_SHARE = 0.1
-"""Share of the budget within which the greedy planner improves its plan."""
+"""Share of the budget within which the greedy planner improves its plan, where the precedence graph is likely to have a
+better one; else it makes all of its passes first."""
+ROOMY = 0.25
+"""Buffers per block from which on the choices of the precedence graph are likely to find places."""
 LIGHT_SECONDS = 0.12
 """For the interpreted search: what it proves needs no library to be loaded."""
 SMALL_BLOCKS = 12
@@ -101,7 +104,7 @@ class SmashPlanner(MethodPlanner):
             Method("search", plain, part.search, wide_share),
         )
         return (
-            Method("greedy", anything, part.greedy, GREEDY_SHARE),
+            Method("greedy", anything, part.greedy, part.greedy_share(problem)),
             Method("light search", plain, part.light_search, most=LIGHT_SECONDS),
             *(small if blocks <= SMALL_BLOCKS else large),
             Method("the law's states", not_plain, search_law_states, SEARCH_SHARE),
@@ -130,6 +133,11 @@ class _Parts:
         self._beam: BeamSearch | None = None
         self._greedy: GreedyRun | None = None
 
+    @staticmethod
+    def greedy_share(problem: Problem) -> float:
+        """Return the share of the budget within which the greedy planner makes its passes at the beginning."""
+        return GREEDY_SHARE if _roomy(problem) else 1.0
+
     def precedence_share(self, problem: Problem) -> float:
         """Return the share of the time left that the precedence graph may take."""
         return PRECEDENCE_SHARE if len(problem.instance.blocks) <= FEW_BLOCKS else LARGE_SHARE
@@ -141,7 +149,7 @@ class _Parts:
 
     def greedy(self, problem: Problem, log: SolveLog, until: float) -> None:
         """Plan as the greedy planner alone does: with the time for it no plan is dearer than its."""
-        self._greedy_on(problem, log, until, patient=False, first_until=end_of(until, GREEDY_SHARE))
+        self._greedy_on(problem, log, until, patient=False, first_until=end_of(until, self.greedy_share(problem)))
 
     def greedy_passes(self, problem: Problem, log: SolveLog, until: float) -> None:
         """Give the greedy planner some more passes: cheap, and what helps most where locations are few."""
@@ -193,19 +201,21 @@ class _Parts:
         log.details |= {"beam": beam.ended, "beam_width": beam.width}
 
     def precedence(self, problem: Problem, log: SolveLog, until: float) -> None:
-        """Bound the cost by the precedence graph, and schedule its choices."""
+        """Bound the cost by the precedence graph, and schedule its choices; greedy passes come first if none fits."""
         from smash.planners.precedence.bound import ORIGIN, precedence_bound
 
+        end = end_of(until, self.precedence_share(problem))
         if self._greedy is not None:  # what greedy passes are left keep their time, if that is not nearly all
             began = perf_counter()
-            rest = end_of(until, self.precedence_share(problem)) - began
+            rest = end - began
             until = min(until, began + max(LEAST_SHARE * rest, rest - self._greedy.seconds_left()))
         precedence_bound(
             problem,
             until,
             lambda actions: log.offer(actions, "exact"),
             self.settings.threads,
-            on_bound=lambda bound: log.prove(bound, ORIGIN),
+            lambda: self.greedy(problem, log, end),
+            lambda bound: log.prove(bound, ORIGIN),
         )
 
     def layered(self, problem: Problem, log: SolveLog, until: float) -> None:
@@ -215,6 +225,12 @@ class _Parts:
         answer = LayeredPlanner().plan(problem, self.settings, left(until), Relay(log, "milp"))
         if answer.status == "infeasible":
             log.refute(answer.bound_origin or "layered")
+
+
+def _roomy(problem: Problem) -> bool:
+    """Whether the choices of the precedence graph are likely to find places: blocks that fall need none."""
+    instance = problem.instance
+    return problem.options.topple or len(instance.buffers) >= ROOMY * len(instance.blocks)
 
 
 def _cost(log: SolveLog) -> int:

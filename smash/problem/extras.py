@@ -18,6 +18,7 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "scip": ("pyscipopt",),
     "clingo": ("clingo",),
     "didp": ("didppy",),
+    "maxsat": ("pysat",),
 }
 """Extra -> the modules that come with it."""
 

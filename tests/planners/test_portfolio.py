@@ -167,6 +167,26 @@ LAST = [
 LAYERED = ("layered", 0.5, math.inf)
 
 
+def test_where_the_precedence_graph_is_unlikely_to_find_places_greedy_makes_all_of_its_passes_first():
+    for topple, buffers, share in ((False, 3, 1.0), (False, 20, 0.1), (True, 0, 0.1)):
+        problem = Problem(generate("multi", 20, buffers=buffers)[0], PlanOptions(topple))
+        assert rows(problem)[0] == ("greedy", share, math.inf)
+
+
+def test_choices_that_do_not_fit_have_greedy_end_its_passes_before_more_is_bounded(monkeypatch):
+    problem = Problem(wide(60, 4, 3, 0), PlanOptions(topple=False))
+    alone = [len(actions) for actions in greedy_plans(problem, math.inf)]
+    parts, log, costs = _Parts(Settings()), SolveLog(problem), []
+
+    def no_plan(problem, deadline, on_plan, threads, on_no_plan, on_bound):
+        on_no_plan()
+        costs.append(log.cost)
+
+    monkeypatch.setattr("smash.planners.precedence.bound.precedence_bound", no_plan)
+    parts.precedence(problem, log, perf_counter() + 100.0)
+    assert costs == [alone[-1]]
+
+
 def test_up_to_twelve_blocks_the_search_comes_before_the_precedence_graph():
     exact = [("search", 0.6, math.inf), ("precedence", 0.3, math.inf)]
     assert rows(sized(12)) == [*FIRST, *exact, LAYERED, *LAST]

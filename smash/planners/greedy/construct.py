@@ -1,13 +1,15 @@
 """One pass of the greedy planner: direct moves while there are any, else dig for the cheapest next goal block.
 
 Each round fixes one more goal block for good, so a pass ends; between two blocks it costs O(locations), so its
-time is near-linear in the plan's length.
+time is near-linear in the plan's length. Where a block is put aside is read off a list of the locations by when they
+are needed next, in O(log locations).
 """
 
 from __future__ import annotations
 
 import math
 import random
+from bisect import bisect_left, bisect_right, insort
 from collections.abc import Sequence
 from time import perf_counter
 
@@ -16,6 +18,8 @@ from smash.problem.views.targets import Piles, Resting
 
 NEVER = math.inf
 """The due time of a block that is not needed."""
+CHECK_SECONDS = 3e-6
+"""About what an action takes to be judged and reported, once the pass is over."""
 
 
 class Construction:
@@ -66,15 +70,17 @@ class Construction:
             for level, block in enumerate(blocks):
                 right = self.done[location] == level < len(target[location]) and target[location][level] == block
                 self.done[location] += right
-                self._push(block, location)
+                self._lay(block, location)
         self.agenda = list(range(len(target)))
+        self._needed = [(self._release(at), len(pile), at) for at, pile in enumerate(self.piles)]
+        self._by_need = sorted(self._needed)
 
     def run(self, first: Sequence[int] = (), deadline: float = math.inf) -> list[Step] | None:
         """Topple the stacks `first` whole, then work until every target pile is built.
 
         Args:
             first: stacks.
-            deadline: when to give up [s, `perf_counter`].
+            deadline: when the plan is to be judged [s, `perf_counter`]; it is given up if it would not be.
 
         Returns:
             The steps, or None where it was given up.
@@ -85,7 +91,7 @@ class Construction:
         self._direct_moves()
         while (goal := self._next_goal()) is not None:
             block = self.target[goal][self.done[goal]]
-            if perf_counter() > deadline:
+            if perf_counter() + CHECK_SECONDS * len(self.steps) > deadline:
                 return None
             while self.finished_at[block] == NEVER:
                 self._dig(block, goal)
@@ -149,6 +155,10 @@ class Construction:
                 self.agenda.append(self.goal_of[block])
 
     def _push(self, block: int, location: int) -> None:
+        self._lay(block, location)
+        self._note_need(location)
+
+    def _lay(self, block: int, location: int) -> None:
         pile, earliest = self.piles[location], self.earliest[location]
         placed = len(pile) < self.done[location]
         lowest = earliest[-1] if earliest else NEVER
@@ -166,6 +176,7 @@ class Construction:
         self.agenda.append(location)
         if pile and self.goal_of[pile[-1]] != ON_TABLE:
             self.agenda.append(self.goal_of[pile[-1]])
+        self._note_need(location)
 
     def _let_fall(self) -> None:
         """Bring what may not lie where it does (`Resting`) to where it may, in the end to the table region."""
@@ -217,19 +228,25 @@ class Construction:
 
         With topple any stack will do if all else is to be avoided: it can be emptied again.
         """
-        due = self.due[block]
-        best, least = -1, (True, math.inf, math.inf)
-        for location, pile in enumerate(self.piles):
-            if location == source or location in avoid:
-                continue
-            release = self._release(location)
-            harm = release < due or release == due < NEVER or (due == NEVER and self._spoils(block, pile))
-            key = (harm, -release if harm else release, len(pile))
-            if best < 0 or key < least:
-                best, least = location, key
-        if best >= 0:
-            return best
+        due, by_need, skipped = self.due[block], self._by_need, {source, *avoid}
+        harmless = bisect_right(by_need, (due, math.inf)) if due < NEVER else bisect_left(by_need, (NEVER,))
+        for index in range(harmless, len(by_need)):
+            location = by_need[index][2]
+            if location not in skipped and (due < NEVER or not self._spoils(block, self.piles[location])):
+                return location
+        for release, _, location in reversed(by_need):
+            if location not in skipped:  # the latest need: of those the lowest pile
+                same = range(bisect_left(by_need, (release,)), len(by_need))
+                return next(by_need[index][2] for index in same if by_need[index][2] not in skipped)
         return next(location for location in range(self.stacks) if location != source)
+
+    def _note_need(self, location: int) -> None:
+        """Keep the list of the locations in its order when what lies on one has changed."""
+        before = self._needed[location]
+        after = (self._release(location), len(self.piles[location]), location)
+        del self._by_need[bisect_left(self._by_need, before)]
+        insort(self._by_need, after)
+        self._needed[location] = after
 
     def _spoils(self, block: int, pile: Sequence[int]) -> bool:
         return bool(pile) and self.resting.wrong(block, pile[-1])

@@ -25,6 +25,8 @@ GRACE = 0.3
 """Seconds that a first plan may take longer than there is time: budgets are kept within half a second."""
 LATER_NOISE = (0.3, 0.6, 1.0, 2.0)
 """The same for the passes after those, in turn."""
+LONG = 2_000
+"""A first plan of more steps is told before it is shortened: that takes as long as making it."""
 
 
 def greedy_plans(
@@ -125,13 +127,18 @@ class _Passes:
         self._passes = 0
 
     def improving(self, deadline: float, patient: bool, first_until: float) -> Iterator[list[Step]]:
-        """Yield the first plan and every better one, beginning no pass that would end too late."""
+        """Yield the first plan and every better one; begin no pass that would end too late, and end one that does."""
         if not self.best:
             began = perf_counter()
             latest = max(deadline, first_until)
-            if not self._better((), 0.0, max(latest, began) + GRACE, latest):
+            made = self._construct((), 0.0, max(latest, began) + GRACE)
+            if made is None:
                 return
-            yield self.best
+            if len(made.steps) > LONG:
+                yield made.steps
+            self._keep(made, latest)
+            if self.best != made.steps or len(made.steps) <= LONG:
+                yield self.best
             # With the time that the plan's taker needs to judge and report it.
             self._longest = perf_counter() - began
         while True:
@@ -141,9 +148,14 @@ class _Passes:
             began = perf_counter()
             if began + self._longest > deadline or (later and not patient):
                 return
+            before = self.draw.getstate()
+            made = self._construct(first, noise, deadline)
+            if made is None:
+                self.draw.setstate(before)  # the same pass again when there is time
+                return
             self._waiting = None
             self._passes += not later
-            if self._better(first, noise):
+            if self._keep(made, deadline):
                 yield self.best
             self._longest = max(self._longest, perf_counter() - began)
 
@@ -163,10 +175,7 @@ class _Passes:
         for noise in itertools.cycle(LATER_NOISE):
             yield (), noise, True
 
-    def _better(
-        self, first: Sequence[int], noise: float, give_up: float = math.inf, shorten_until: float = math.inf
-    ) -> bool:
-        """Make one pass; keep its plan, times and topples if it is the best so far."""
+    def _construct(self, first: Sequence[int], noise: float, give_up: float) -> Construction | None:
         construction = Construction(
             self.problem,
             self.target,
@@ -176,15 +185,16 @@ class _Passes:
             noise=noise,
             draw=self.draw,
         )
-        made = construction.run(first, give_up)
-        if made is None:
-            return False
-        steps = shorten(made, shorten_until)
+        return None if construction.run(first, give_up) is None else construction
+
+    def _keep(self, made: Construction, shorten_until: float) -> bool:
+        """Shorten a pass's plan and keep it if it is the best so far."""
+        steps = shorten(made.steps, shorten_until)
         if self.best and cost_of(steps) >= cost_of(self.best):
             return False
         self.best = steps
-        self.due = construction.finished_at
-        self.toppled = construction.toppled
+        self.due = made.finished_at
+        self.toppled = made.toppled
         return True
 
     def _heights(self) -> list[float]:

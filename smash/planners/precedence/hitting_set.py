@@ -1,7 +1,8 @@
 """The cheapest choices that hit every cycle: cuts on the LP relaxation, then on integer solutions.
 
 Rows are added as cycles are found violated. Where each block is put aside by itself the choices are a directed feedback
-vertex set; if a second does not settle that, an annealed set and rank inequalities come before the integer solves.
+vertex set; if a second does not settle that, an annealed set comes next, and then core-guided MaxSAT where the extra
+`maxsat` is installed, rank inequalities and integer solves where it is not.
 """
 
 from __future__ import annotations
@@ -19,9 +20,15 @@ from smash.planners.precedence.cycles import CycleFinder
 from smash.planners.precedence.dive import EventOrder, dive
 from smash.planners.precedence.graph import Floats, PrecedenceGraph
 from smash.planners.precedence.relaxation import Relaxation, Row
+from smash.problem.extras import is_there
 
 if TYPE_CHECKING:
     from smash.planners.precedence.ranks import RankFinder
+    from smash.planners.precedence.turns import TurnGraph
+
+HIGHS, MAXSAT = "HiGHS", "RC2"
+"""What proves the bounds: the solver of linear and integer programs, or the one of the extra `maxsat`."""
+MAXSAT_MODULE = "pysat"
 
 TOLERANCE = 1e-6
 DIVE_SECONDS = 0.3
@@ -48,7 +55,8 @@ LONGEST = 8
 MOVES = 10_000
 """Moves of one annealing, per block."""
 ANNEALINGS, ANNEAL_SHARE, RANK_SHARE = 4, 0.15, 0.4
-"""How many there are, and the shares of the time left that they and the rank inequalities may take."""
+"""How many there are at most, as one that finds nothing better is the last, and the shares of the time left that they
+and the rank inequalities may take."""
 
 
 @dataclass(slots=True)
@@ -60,26 +68,37 @@ class HittingSet:
         chosen: the cheapest hitting set found.
         rows: the cycles (and forced topples) found, as sets of choices of which one must be taken.
         cycles: for each row the blocks of its back edges (a single loose block for a forced topple).
-        rounds: LP and MIP solves, and rank inequalities.
+        rounds: LP and MIP solves, rank inequalities, and answers of the MaxSAT solver.
+        prover: what proved the bound, `HIGHS` or `MAXSAT`.
     """
 
     bound: int
     chosen: set[int]
     rows: list[Row] = field(default_factory=list)
     cycles: list[tuple[int, ...]] = field(default_factory=list)
-    rounds: dict[str, int] = field(default_factory=lambda: {"lp": 0, "mip": 0, "ranks": 0})
+    rounds: dict[str, int] = field(default_factory=lambda: {"lp": 0, "mip": 0, "ranks": 0, "maxsat": 0})
+    prover: str = HIGHS
 
 
 class HittingSetSolver:
     """Branch-and-cut for one graph; `solve` may be stopped at any time and then returns a valid bound.
 
-    `on_bound` is called at once with every better bound.
+    Args:
+        graph: the precedence graph.
+        threads: HiGHS' threads.
+        on_bound: called at once with every better bound.
+        prover: `HIGHS` or `MAXSAT`; None: the latter where it is installed.
     """
 
     def __init__(
-        self, graph: PrecedenceGraph, threads: int = 1, on_bound: Callable[[int], object] | None = None
+        self,
+        graph: PrecedenceGraph,
+        threads: int = 1,
+        on_bound: Callable[[int], object] | None = None,
+        prover: str | None = None,
     ) -> None:
         self.graph = graph
+        self._prover = prover or (MAXSAT if is_there(MAXSAT_MODULE) else HIGHS)
         self._on_bound = on_bound
         self.finder = CycleFinder(graph)
         self._kernels = INTERPRETED
@@ -135,12 +154,13 @@ class HittingSetSolver:
             if self._report is not None:
                 self._report(chosen)
 
-    def _raise_bound(self, value: float) -> None:
+    def _raise_bound(self, value: float, prover: str = HIGHS) -> None:
         if not math.isfinite(value):
             return
         units = math.ceil(value / self._unit - TOLERANCE)
         if units * self._unit > self.state.bound:
             self.state.bound = units * self._unit
+            self.state.prover = prover
             if self._on_bound is not None:
                 self._on_bound(self.state.bound)
 
@@ -194,14 +214,47 @@ class HittingSetSolver:
         self._compile(min(MOST_COMPILE_SECONDS, 0.2 * (deadline - perf_counter())))
         if not self._kernels.compiled:
             return
-        from smash.planners.precedence.annealing import Annealing
+        self._anneal(turns, _share(deadline, ANNEAL_SHARE))
+        if self._prover == MAXSAT:
+            self._count(turns, deadline)
+            return
         from smash.planners.precedence.ranks import RankFinder
 
-        until = _share(deadline, ANNEAL_SHARE)
-        for seed in range(ANNEALINGS):
-            if perf_counter() < until and not self._proven():
-                self._offer(Annealing(turns, self._kernels, seed).run(MOVES * len(turns.free), until))
         self._rank(RankFinder(turns, self._kernels), _share(deadline, RANK_SHARE), deadline)
+
+    def _anneal(self, turns: TurnGraph, until: float) -> None:
+        """Look for fewer choices, until one annealing finds nothing better."""
+        from smash.planners.precedence.annealing import Annealing
+
+        for seed in range(ANNEALINGS):
+            if perf_counter() > until or self._proven():
+                return
+            before = self.state.chosen
+            self._offer(Annealing(turns, self._kernels, seed).run(MOVES * len(turns.free), until))
+            if seed and self.state.chosen is before:
+                return
+
+    def _count(self, turns: TurnGraph, deadline: float) -> None:
+        """Find the fewest choices by MaxSAT, adding the cycles that each answer leaves, until one leaves none."""
+        from smash.planners.precedence.maxsat import MaxSat
+
+        rows = self.state.rows
+
+        def tell(fewest: int) -> bool:
+            self._raise_bound(fewest * self._unit, MAXSAT)
+            return not self._proven()
+
+        solver = MaxSat(turns, rows, tell)
+        while (values := solver.solve(deadline)) is not None:
+            self.state.rounds["maxsat"] += 1
+            known = len(rows)
+            self._offer(self._dive(values, deadline))
+            self._cut_off(values, deadline)
+            if self._proven() or len(rows) == known:
+                break
+            for row in rows[known:]:
+                solver.add(row)
+        solver.close()
 
     def _rank(self, finder: RankFinder, until: float, deadline: float) -> None:
         """Add rank inequalities of growing sets; each round cuts the relaxation by cycles again."""

@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from smash.planners.greedy import greedy_method
 from smash.planners.protocol import Method, MethodPlanner, Settings, SolveLog, plain
+from smash.problem.extras import is_there
 from smash.problem.problem import Problem
 
 GREEDY_SHARE = 0.1
@@ -20,14 +21,17 @@ class PrecedencePlanner(MethodPlanner):
     is a lower bound, and the details say so.
     """
 
-    summary: ClassVar[str] = "exact: cheapest hitting set of the precedence graph's cycles (HiGHS), no time index"
+    summary: ClassVar[str] = "exact: cheapest hitting set of the precedence graph's cycles, no time index"
     proves: ClassVar[bool] = True
     open_goals: ClassVar[bool] = True
     gentle: ClassVar[bool] = True
 
     def prepare(self) -> None:
-        """Load the solver and the arrays, so that no import is counted as planning."""
-        from smash.planners.precedence import bound  # noqa: F401
+        """Load the solvers and the arrays, so that no import is counted as planning."""
+        from smash.planners.precedence import bound, hitting_set  # noqa: F401
+
+        if is_there(hitting_set.MAXSAT_MODULE):
+            from smash.planners.precedence import maxsat  # noqa: F401
 
     def methods(self, problem: Problem, settings: Settings) -> Sequence[Method]:
         """Return the hitting set alone."""
@@ -55,6 +59,7 @@ def _hitting_set(problem: Problem, settings: Settings, log: SolveLog, until: flo
         "choices": len(found.graph.choices),
         "rows": len(found.hitting_set.rows),
         "rounds": dict(found.hitting_set.rounds),
+        "prover": found.hitting_set.prover,
         "relaxed_cost": found.relaxed_cost,
     }
     if found.actions is None:

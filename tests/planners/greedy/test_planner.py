@@ -96,3 +96,25 @@ def test_a_run_goes_on_where_it_was_stopped():
     assert found == list(greedy_plans(problem, math.inf))
     assert run.seconds_left() == 0
     assert list(run.plans(math.inf)) == []
+
+
+def test_a_long_first_plan_is_told_before_it_is_shortened(monkeypatch):
+    monkeypatch.setattr("smash.planners.greedy.passes.LONG", 10)
+    monkeypatch.setattr("smash.planners.greedy.passes.shorten", lambda steps, until: steps[:-1])
+    problem = Problem(generate("multi", 20, buffers=0)[0], PlanOptions(topple=False))
+    plans = greedy_steps(problem, math.inf)
+    assert next(plans)[:-1] == next(plans)
+
+
+def test_a_pass_that_is_given_up_is_made_again_when_there_is_time(monkeypatch):
+    problem = Problem(wide(60, 4, 3, 0), PlanOptions(topple=False))
+    whole = list(GreedyRun(problem).plans(math.inf))
+    run = GreedyRun(problem)
+    found = [next(run.plans(math.inf))]
+    for looks in (3, 50, 90):
+        with monkeypatch.context() as patch:
+            clock = iter([0.0] * looks + [2.0] * 1000)
+            patch.setattr("smash.planners.greedy.passes.perf_counter", lambda: 0.0)
+            patch.setattr("smash.planners.greedy.construct.perf_counter", clock.__next__)
+            found += run.plans(1.0)
+    assert [*found, *run.plans(math.inf)] == whole

@@ -7,13 +7,13 @@ from time import perf_counter
 import pytest
 
 from smash.planners.precedence.graph import build_graph
-from smash.planners.precedence.hitting_set import HittingSetSolver
+from smash.planners.precedence.hitting_set import HIGHS, HittingSetSolver
 from smash.problem import PlanOptions
 from smash.problem.problem import Problem
 from smash.problem.sets.open_instances import Shape, draw_instance
 from tests.planners.precedence.events import hits_all
 
-pytest.importorskip("pysat", reason="python-sat of the extra `dev` is not installed")
+pytest.importorskip("pysat", reason="python-sat of the extra `maxsat` is not installed")
 
 from tests.planners.precedence.maxsat import fewest_aside
 
@@ -29,7 +29,7 @@ def drawn(blocks, stacks, seed):
 @pytest.mark.parametrize(("blocks", "stacks"), [(20, 3), (60, 8)])
 def test_two_methods_find_the_same(blocks, stacks, seed):
     graph = drawn(blocks, stacks, seed)
-    solver = HittingSetSolver(graph)
+    solver = HittingSetSolver(graph, prover=HIGHS)
     found = solver.solve(math.inf)
     assert hits_all(graph, found.chosen)
     assert found.bound == solver.cost(found.chosen) == 2 * fewest_aside(graph)
@@ -37,7 +37,7 @@ def test_two_methods_find_the_same(blocks, stacks, seed):
 
 def test_annealing_and_rank_inequalities_prove_nothing_that_is_not_so(kernels):
     graph = drawn(120, 12, seed=0)
-    solver = HittingSetSolver(graph)
+    solver = HittingSetSolver(graph, prover=HIGHS)
     found = solver.solve(perf_counter() + 30)
     assert found.bound <= 2 * fewest_aside(graph) <= solver.cost(found.chosen)
 
@@ -46,6 +46,6 @@ def test_annealing_and_rank_inequalities_prove_nothing_that_is_not_so(kernels):
 @pytest.mark.parametrize("seed", range(10))
 def test_three_hundred_blocks_on_thirty_stacks(seed, kernels):
     graph = drawn(300, 30, seed)
-    solver = HittingSetSolver(graph)
+    solver = HittingSetSolver(graph, prover=HIGHS)
     found = solver.solve(perf_counter() + 300)
     assert found.bound <= 2 * fewest_aside(graph) <= solver.cost(found.chosen)

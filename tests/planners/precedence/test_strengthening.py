@@ -1,16 +1,21 @@
-"""Annealing and rank inequalities inside of the solver: they speed a proof up and change nothing of it."""
+"""Annealing, rank inequalities and MaxSAT inside of the solver: they speed a proof up and change nothing of it."""
 
+import itertools
 import math
 
 import pytest
 
 from smash.planners.precedence import hitting_set
 from smash.planners.precedence.graph import build_graph
-from smash.planners.precedence.hitting_set import HittingSetSolver
+from smash.planners.precedence.hitting_set import HIGHS, MAXSAT, MAXSAT_MODULE, HittingSetSolver
 from smash.problem import PlanOptions
+from smash.problem.extras import is_there
 from smash.problem.problem import Problem
 from tests.arrangements import wide
 from tests.planners.precedence.events import cheapest_hitting_cost, hits_all
+
+NO_MAXSAT = pytest.mark.skipif(not is_there(MAXSAT_MODULE), reason="python-sat of the extra `maxsat` is not installed")
+PROVERS = [HIGHS, pytest.param(MAXSAT, marks=NO_MAXSAT)]
 
 
 @pytest.fixture
@@ -29,9 +34,10 @@ def at_once(monkeypatch):
 @pytest.mark.usefixtures("at_once")
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("options", [PlanOptions(topple=False), PlanOptions(max_topple=1)])
-def test_small_graphs_end_at_the_cheapest_of_all_sets(seed, options, kernels):
+@pytest.mark.parametrize("prover", PROVERS)
+def test_small_graphs_end_at_the_cheapest_of_all_sets(seed, options, prover, kernels):
     graph = build_graph(Problem(wide(11, 4, seed), options))
-    solver = HittingSetSolver(graph)
+    solver = HittingSetSolver(graph, prover=prover)
     found = solver.solve(math.inf)
     assert hits_all(graph, found.chosen)
     assert found.bound == solver.cost(found.chosen) == cheapest_hitting_cost(graph)
@@ -41,8 +47,56 @@ def test_small_graphs_end_at_the_cheapest_of_all_sets(seed, options, kernels):
 def test_a_gap_of_the_cycles_is_closed_by_rank_inequalities(kernels):
     graph = build_graph(Problem(wide(120, 20, seed=1), PlanOptions(topple=False)))
     bounds = []
-    solver = HittingSetSolver(graph, on_bound=bounds.append)
+    solver = HittingSetSolver(graph, on_bound=bounds.append, prover=HIGHS)
     found = solver.solve(math.inf)
     assert found.rounds["ranks"] > 0
+    assert found.prover == HIGHS
     assert bounds[-1] == solver.cost(found.chosen)
     assert hits_all(graph, found.chosen)
+
+
+@NO_MAXSAT
+@pytest.mark.usefixtures("at_once")
+def test_a_gap_of_the_cycles_is_closed_by_maxsat_where_it_is_installed(kernels):
+    graph = build_graph(Problem(wide(120, 20, seed=1), PlanOptions(topple=False)))
+    bounds = []
+    solver = HittingSetSolver(graph, on_bound=bounds.append)
+    found = solver.solve(math.inf)
+    assert found.prover == MAXSAT
+    assert bounds == sorted(set(bounds))
+    assert bounds[-1] == solver.cost(found.chosen)
+    assert hits_all(graph, found.chosen)
+
+
+@NO_MAXSAT
+@pytest.mark.usefixtures("at_once")
+def test_maxsat_that_is_stopped_leaves_a_bound_that_holds(kernels, monkeypatch):
+    from smash.planners.precedence import maxsat
+
+    graph = build_graph(Problem(wide(60, 10, seed=2), PlanOptions(topple=False)))
+    full = HittingSetSolver(graph).solve(math.inf).bound
+    stopped = HittingSetSolver(graph)
+    monkeypatch.setattr(maxsat, "perf_counter", iter([0.0] * 40 + [math.inf] * 9).__next__)
+    found = stopped.solve(math.inf)
+    assert found.bound <= full <= stopped.cost(found.chosen)
+
+
+@NO_MAXSAT
+@pytest.mark.parametrize("seed", range(4))
+def test_short_cycles_are_all_cycles_of_two_and_three_without_a_shorter_one(seed):
+    from smash.planners.precedence.maxsat import short_cycles
+    from smash.planners.precedence.turns import turn_graph
+
+    turns = turn_graph(build_graph(Problem(wide(14, 5, seed), PlanOptions(topple=False))))
+    free = turns.free.tolist()
+    leads = turns.edges == 1
+    pairs = {(a, b) for a, b in itertools.combinations(free, 2) if leads[a, b] and leads[b, a]}
+    triples = {
+        frozenset(turn)
+        for turn in itertools.permutations(free, 3)
+        if all(leads[a, b] and not leads[b, a] for a, b in zip(turn, (*turn[1:], turn[0]), strict=True))
+    }
+    found = list(short_cycles(turns))
+    assert sorted(cycle for cycle in found if len(cycle) == 2) == sorted(pairs)
+    assert {frozenset(cycle) for cycle in found if len(cycle) == 3} == triples
+    assert len(found) == len(pairs) + len(triples)
