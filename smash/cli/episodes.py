@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from smash.cli.choices import engine_option
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.episodes.asked import note_asked
 from smash.experiments.episodes.question import EpisodeRun
@@ -36,6 +37,7 @@ SECONDS_AN_EPISODE = 5.0
 )
 @click.option("--label", "labels", multiple=True, metavar="NAME", help="Only plans of this planner; repeatable.")
 @click.option("--scene", type=click.Path(path_type=Path), help="Scene file (default: the built-in scene).")
+@engine_option
 @click.option("--replays", is_flag=True, help="Write a 3D replay of each plan's first episode to RESULTS/replays.")
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="At a time.")
 @click.option("--dry-run", is_flag=True, help="Say how many episodes are left and how long they take at a guess.")
@@ -45,6 +47,7 @@ def command(
     policies: tuple[str, ...],
     labels: tuple[str, ...],
     scene: Path | None,
+    engine: str | None,
     replays: bool,
     jobs: int,
     dry_run: bool,
@@ -57,14 +60,15 @@ def command(
     Examples:
       smash sweep experiments/tables-subset.toml --out runs/tables && smash episodes runs/tables --jobs 2
       smash episodes runs/tables --label smash --policy replan --policy open --seeds 3
+      smash episodes runs/tables-mujoco --engine mujoco
     """
     require("smash episodes", *EXECUTION)
-    if scene is not None:
-        from smash.execution.scene.scene_file import read_scene
+    from smash.execution.physics.engines import engine_of
+    from smash.execution.scene.scene_file import default_scene, read_scene
 
-        read_scene(scene)
+    engine = engine_of(default_scene() if scene is None else read_scene(scene), engine)
     file = None if scene is None else str(scene.resolve())
-    runs = episode_runs(results, range(seeds), policies, file, labels, replays)
+    runs = episode_runs(results, range(seeds), policies, file, labels, replays, engine=engine)
     if replays:
         (results / REPLAYS).mkdir(exist_ok=True)
     with stopped_by_signals() as stop, Writer(results, EPISODES) as records:
@@ -72,13 +76,13 @@ def command(
         about = span(left * SECONDS_AN_EPISODE / jobs)
         for line in records.set_aside:
             click.echo(one_line(f"{line}: damaged: set aside, its episode is carried out again"), err=True)
-        click.echo(f"{len(runs)} episodes, {left} left, about {about} with {jobs} at a time", err=True)
+        click.echo(f"{len(runs)} episodes, {left} left, about {about} with {jobs} at a time, by {engine}", err=True)
         bare = sum(run.key in records.finished and not Path(run.replay).exists() for run in runs if run.replay)
         if bare:
             click.echo(f"{bare} recorded earlier have no replay: `smash execute --replay` makes one", err=True)
         if dry_run:
             return
-        note_asked(results, seeds, policies, scene, labels)
+        note_asked(results, seeds, policies, scene, labels, engine)
         done = 0
 
         def ended(run: EpisodeRun, record: EpisodeRecord) -> None:

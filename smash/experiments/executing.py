@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from smash.experiments.episodes.executors import executor_of
 from smash.problem.arguments import whole_number
 from smash.problem.errors import SmashError
-from smash.problem.extras import EXECUTION, require
+from smash.problem.extras import EXECUTION, require, require_engine
 from smash.problem.files.given import GivenInstance, GivenPlan, given_instance, given_plan
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ def execute(
     engine: str | None = None,
     robot: str | None = None,
 ) -> Episode:
-    """Carry a plan out with the Panda in PyBullet and say how it went. A failed execution is no exception.
+    """Carry a plan out with the Panda in simulation and say how it went. A failed execution is no exception.
 
     Example:
         `smash.execute(instance, smash.plan(instance)).success`
@@ -38,21 +38,23 @@ def execute(
         replan: plan anew from what is observed where an action cannot be done, with the plan's own planner (else
             `greedy`); False is the paper's open pipeline, where the first failure ends the episode.
         scene: the path of a scene file, or a scene (None: the built-in one).
-        engine: None; PyBullet is the one that there is.
+        engine: `pybullet` or `mujoco` (None: the scene's, else PyBullet, else MuJoCo where that is what is installed).
         robot: None; the Panda is the one that there is.
 
     Returns:
-        The episode: `success`, `failure` (name, step, action, reason), times, and each action as it was performed.
+        The episode: `success`, `failure` (name, step, action, reason), `engine`, times, and each action as
+        it was performed.
 
     Raises:
-        MissingExtra: where the extra `execution` is not installed.
+        MissingExtra: where the extra `execution`, or the engine, is not installed.
         RefusedPlan: where the law refuses the plan.
         SmashError: where an argument is wrong, or the scene has no place for the instance.
     """
     require("execute", *EXECUTION)
-    for what, asked in (("engine", engine), ("robot", robot)):
-        if asked is not None:
-            raise SmashError(f"{what}: {asked!r} is not allowed; there is no choice of one, None is allowed")
+    if engine is not None:
+        require_engine(engine)
+    if robot is not None:
+        raise SmashError(f"robot: {robot!r} is not allowed; there is no choice of one, None is allowed")
     whole_number("seed", seed, 0, 2**31 - 1)
     problem = given_instance(instance)
-    return executor_of(problem, given_plan(plan, problem), seed=seed, replan=replan, scene=scene).run()
+    return executor_of(problem, given_plan(plan, problem), seed=seed, replan=replan, scene=scene, engine=engine).run()

@@ -7,7 +7,7 @@ frame (the stack's frame of the paper's pre-smash pose) has x radially outward a
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from hashlib import sha256
 from math import cos, hypot, pi, sin
 
@@ -103,6 +103,7 @@ class Tabletop:
         buffers: Slots of buffers.
         tray: What carriers are; none in a scene without stations.
         stations: Slots that trays can stand at, their length across the bearing.
+        engine: What simulates it where nothing else is named; no part of the fingerprint.
     """
 
     name: str
@@ -115,6 +116,7 @@ class Tabletop:
     buffers: tuple[Slot, ...]
     tray: Tray | None = None
     stations: tuple[Slot, ...] = ()
+    engine: str | None = field(default=None, repr=False)
 
     @property
     def slots(self) -> tuple[Slot, ...]:

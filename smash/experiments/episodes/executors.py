@@ -29,6 +29,7 @@ def executor_of(
     scene: str | os.PathLike[str] | Tabletop | None = None,
     replanner: str | None = None,
     budget: float = REPLAN_BUDGET,
+    engine: str | None = None,
     gui: bool = False,
     on_frame: Frame | None = None,
     on_step: Callable[[Performed], Any] | None = None,
@@ -43,13 +44,14 @@ def executor_of(
         scene: the path of a scene file, or a scene (None: the built-in one).
         replanner: planner to replan with (None: the plan's own); `greedy` where nobody is called so.
         budget: wall time of each replanning [s].
-        gui: show PyBullet's window.
+        engine: what simulates it (None: the scene's, else the one that is there).
+        gui: show the engine's window.
         on_frame: called with the world 25 times a simulated second.
         on_step: called with each action before it is carried out.
 
     Raises:
         RefusedPlan: where the law refuses the plan.
-        Unsupported: where the hand holds a block at the start.
+        Unsupported: where the hand holds a block at the start, or the engine is not installed.
         SmashError: where the scene is malformed, or has no place for the instance.
     """
     verdict = check_plan(instance, plan)
@@ -70,6 +72,7 @@ def executor_of(
         seed=seed,
         policy=None if replan else OPEN,
         replanner=replanner_by(replanner or plan.planner, budget, seed) if replan else None,
+        engine=engine,
         gui=gui,
         on_frame=on_frame,
         on_step=on_step,

@@ -26,6 +26,7 @@ def carry_out(run: EpisodeRun) -> Episode:
         seed=run.seed,
         replan=run.policy != "open",
         scene=run.scene,
+        engine=run.engine,
         on_frame=capture.frame,
     )
     episode = executor.run()

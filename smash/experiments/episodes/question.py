@@ -17,6 +17,7 @@ class EpisodeRun(msgspec.Struct, frozen=True):
         scene: The scene file, or None for the built-in scene.
         told: What `told_apart` says of the scene, or None for the built-in scene.
         replay: The page to write, or None.
+        engine: What simulates it.
     """
 
     record: RunRecord
@@ -25,8 +26,10 @@ class EpisodeRun(msgspec.Struct, frozen=True):
     scene: str | None
     told: str | None = None
     replay: str | None = None
+    engine: str = "pybullet"
 
     @property
     def key(self) -> str:
         """Names the episode for good."""
-        return f"{self.record.key}/{self.policy}/{self.seed}" + (f"/{self.told}" if self.told else "")
+        words = [self.record.key, self.policy, str(self.seed), *filter(None, [self.told])]
+        return "/".join(words if self.engine == "pybullet" else [*words, self.engine])

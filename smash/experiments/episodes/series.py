@@ -49,6 +49,7 @@ def episode_runs(
     labels: Sequence[str] = (),
     replays: bool = False,
     told: str | None = None,
+    engine: str = "pybullet",
 ) -> list[EpisodeRun]:
     """Return the episodes of all plans that a sweep has recorded, seed by seed, so that a part is a fair sample.
 
@@ -60,6 +61,7 @@ def episode_runs(
         labels: Only plans of planners so labelled; all where there are none.
         replays: Write a replay page of each plan's first episode beside the records.
         told: What tells the scene from others; found out where it is not given.
+        engine: What simulates them.
 
     Raises:
         MalformedFile: where the records are damaged.
@@ -75,7 +77,12 @@ def episode_runs(
     plans = [record for record in plans if not labels or record.label in labels]
     if told is None and scene is not None:
         told = told_apart(scene)
-    runs = [EpisodeRun(record, seed, policy, scene, told) for seed in seeds for record in plans for policy in policies]
+    runs = [
+        EpisodeRun(record, seed, policy, scene, told, engine=engine)
+        for seed in seeds
+        for record in plans
+        for policy in policies
+    ]
     if not replays:
         return runs
     replace = msgspec.structs.replace
@@ -84,7 +91,8 @@ def episode_runs(
 
 def _replay(results: Path, run: EpisodeRun) -> str:
     """The page of an episode: instance, planner, variant and policy in words that any file system takes."""
-    words = (run.record.instance, run.record.label, run.record.variant, run.policy)
+    words = [run.record.instance, run.record.label, run.record.variant, run.policy]
+    words += [] if run.engine == "pybullet" else [run.engine]
     name = re.sub(r"[^A-Za-z0-9.-]+", "-", "_".join(words)).strip("-")
     return str((results / REPLAYS / f"{name}.html").resolve())
 
@@ -144,6 +152,7 @@ def _record(
         policy=run.policy,
         seed=run.seed,
         scene=None if run.scene is None else Path(run.scene).stem,
+        engine=run.engine,
         blocks=len(instance.blocks),
         depth=target_depth(instance),
         cost=plan.cost,
@@ -158,15 +167,15 @@ def _record(
         load_average=(before, load()),
         commit=commit(),
         machine=machine(),
-        versions=versions("greedy") | execution_versions(),
+        versions=versions("greedy") | execution_versions(run.engine),
     )
 
 
-def execution_versions() -> dict[str, str]:
-    """Return the versions of what moves and simulates the arm."""
+def execution_versions(engine: str) -> dict[str, str]:
+    """Return the versions of what moves the arm, and of the engine that simulates it."""
     from importlib.metadata import version
 
-    return {name: version(name) for name in ("pybullet", "ompl", "pin", "coal", "toppra")}
+    return {name: version(name) for name in (engine, "ompl", "pin", "coal", "toppra")}
 
 
 def target_depth(instance: Instance) -> int | None:
