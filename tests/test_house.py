@@ -34,7 +34,19 @@ ORDERS = {
         *("layered", "flow", "former", "portfolio"),
     ),
     "smash.records": (
-        *("outcomes", "locking", "variants", "claims", "record", "runs", "episodes", "trials", "files", "reading"),
+        *(
+            "outcomes",
+            "locking",
+            "variants",
+            "claims",
+            "record",
+            "engines",
+            "runs",
+            "episodes",
+            "trials",
+            "files",
+            "reading",
+        ),
         *("writing", "believing"),
     ),
     "smash.experiments": (

@@ -16,6 +16,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from smash.problem.errors import SmashError
+from smash.records.engines import require_one_engine
 from smash.records.files import TRIALS
 from smash_analysis.command import fail
 from smash_analysis.execution_tables import WITHOUT, paired_table, read_episodes
@@ -85,10 +86,12 @@ def read_trials(directories: Sequence[Path]) -> pd.DataFrame:
 
     Raises:
         MalformedFile: where a directory has none, or they are damaged.
+        MixedEngines: where they were simulated by several engines.
     """
-    rows = []
+    rows, engines = [], []
     for directory in directories:
         for trial in records_of(directory, TRIALS):
+            engines.append(trial.engine)
             rows.append(
                 {
                     **{
@@ -98,6 +101,7 @@ def read_trials(directories: Sequence[Path]) -> pd.DataFrame:
                     "farthest": max((landing.along for landing in trial.landings), default=float("nan")),
                 }
             )
+    require_one_engine(", ".join(map(str, directories)), "topples", engines)
     return pd.DataFrame(rows)
 
 

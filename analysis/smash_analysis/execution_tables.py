@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from smash.records.engines import require_one_engine
 from smash.records.episodes import EpisodeRecord
 from smash.records.files import EPISODES
 from smash_analysis import command
@@ -39,14 +40,22 @@ def read_episodes(results: Path) -> pd.DataFrame:
     Raises:
         MalformedFile: where there are none, or they are damaged.
     """
-    return told_episodes(records_of(results, EPISODES))
+    return told_episodes(records_of(results, EPISODES), str(results))
 
 
-def told_episodes(records: Sequence[EpisodeRecord]) -> pd.DataFrame:
+def told_episodes(records: Sequence[EpisodeRecord], where: str = "the records") -> pd.DataFrame:
     """Return `episodes_table` with `benchmark` (single or multi), and a failure for every loss.
 
     An episode whose process ended without one has failure `crashed`, and the process's problem for a reason.
+
+    Args:
+        records: Of one engine.
+        where: They are from, for messages.
+
+    Raises:
+        MixedEngines: Where they are of several engines.
     """
+    require_one_engine(where, "episodes", (record.engine for record in records))
     episodes = episodes_table(records)
     lost = episodes["failure"].isna() & ~episodes["success"]
     return episodes.assign(

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from math import isnan
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from smash.problem.actions.registry import FAMILY
+from smash.problem.extras import ENGINES
+
+if TYPE_CHECKING:
+    from smash.execution.scene.tabletop import Tabletop
 
 without_option = click.option(
     "--without",
@@ -42,6 +46,19 @@ encoding_option = click.option(
     metavar="NAME",
     help="What a --command is handed: `chain` (the default), `conditional`, `pick-and-place` (no topple, no costs).",
 )
+
+
+engine_option = click.option(
+    "--engine",
+    type=click.Choice(list(ENGINES)),
+    help="What simulates it (default: the scene's, else PyBullet, else MuJoCo where that is what is installed).",
+)
+
+
+def say_engine(engine: str, tabletop: Tabletop, named: str | None) -> None:
+    """Say on standard error which engine is used, where neither the command line nor the scene names one."""
+    if named is None and tabletop.engine is None:
+        click.echo(f"engine: {engine} (--engine names another)", err=True)
 
 
 def check_command(command: str | None, encoding: str | None) -> None:

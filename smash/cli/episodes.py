@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from smash.cli.choices import PACE
+from smash.cli.choices import PACE, engine_option
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.episodes.asked import note_asked
 from smash.experiments.episodes.question import EpisodeRun
@@ -46,6 +46,7 @@ SECONDS_AN_EPISODE = 5.0
     help="As of `smash execute`; each is a scene of its own.",
 )
 @click.option("--pace", "paces", type=PACE, multiple=True, metavar="SHARE", help="The same.")
+@engine_option
 @click.option("--replays", is_flag=True, help="Write a 3D replay of each plan's first episode to RESULTS/replays.")
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="At a time.")
 @click.option("--dry-run", is_flag=True, help="Say how many episodes are left and how long they take at a guess.")
@@ -57,6 +58,7 @@ def command(
     scene: Path | None,
     noises: tuple[str, ...],
     paces: tuple[float, ...],
+    engine: str | None,
     replays: bool,
     jobs: int,
     dry_run: bool,
@@ -70,14 +72,21 @@ def command(
       smash sweep experiments/tables-subset.toml --out runs/tables && smash episodes runs/tables --jobs 2
       smash episodes runs/tables --label smash --policy replan --policy open --seeds 3
       smash episodes runs/tables --label smash --noise pose=3mm --noise pose=5mm
+      smash episodes runs/tables-mujoco --engine mujoco
     """
     require("smash episodes", *EXECUTION)
+    from smash.execution.physics.engines import engine_of
+    from smash.execution.scene.scene_file import default_scene, read_scene
+
+    engine = engine_of(default_scene() if scene is None else read_scene(scene), engine)
     file = None if scene is None else str(scene.resolve())
     changes = list(product(noises or (None,), paces or (None,)))
     runs = [
         run
         for noise, pace in changes
-        for run in episode_runs(results, range(seeds), policies, file, labels, replays, noise=noise, pace=pace)
+        for run in episode_runs(
+            results, range(seeds), policies, file, labels, replays, noise=noise, pace=pace, engine=engine
+        )
     ]
     if replays:
         (results / REPLAYS).mkdir(exist_ok=True)
@@ -86,14 +95,14 @@ def command(
         about = span(left * SECONDS_AN_EPISODE / jobs)
         for line in records.set_aside:
             click.echo(one_line(f"{line}: damaged: set aside, its episode is carried out again"), err=True)
-        click.echo(f"{len(runs)} episodes, {left} left, about {about} with {jobs} at a time", err=True)
+        click.echo(f"{len(runs)} episodes, {left} left, about {about} with {jobs} at a time, by {engine}", err=True)
         bare = sum(run.key in records.finished and not Path(run.replay).exists() for run in runs if run.replay)
         if bare:
             click.echo(f"{bare} recorded earlier have no replay: `smash execute --replay` makes one", err=True)
         if dry_run:
             return
         for noise, pace in changes:
-            note_asked(results, seeds, policies, scene, labels, noise, pace)
+            note_asked(results, seeds, policies, scene, labels, noise, pace, engine)
         done = 0
 
         def ended(run: EpisodeRun, record: EpisodeRecord) -> None:

@@ -7,10 +7,10 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
-from smash.cli.choices import SECONDS, noise_option, pace_option
+from smash.cli.choices import SECONDS, engine_option, noise_option, pace_option, say_engine
 from smash.cli.signals import ended_by_signals
 from smash.experiments.episodes.executors import REPLAN_BUDGET, executor_of
-from smash.problem.extras import EXECUTION, require
+from smash.problem.extras import EXECUTION, require, require_engine
 from smash.problem.files.documents import require_writable, write_text
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import read_plan
@@ -25,6 +25,7 @@ from smash.problem.files.plans import read_plan
 @click.option("--scene", type=click.Path(path_type=Path), help="Scene file (default: the built-in scene).")
 @noise_option
 @pace_option
+@engine_option
 @click.option("--no-replan", is_flag=True, help="The paper's open pipeline: the first failure ends the episode.")
 @click.option("--replanner", metavar="NAME", help="Planner to replan with (default: the plan's own, else greedy).")
 @click.option(
@@ -39,7 +40,7 @@ from smash.problem.files.plans import read_plan
 @click.option("--video", type=click.Path(path_type=Path, dir_okay=False), help="Write a film (.mp4 or .gif).")
 @click.option("--stills", type=click.Path(path_type=Path, dir_okay=False), help="Draw start, middle and end (.png).")
 @click.option("--trajectory", type=click.Path(path_type=Path, dir_okay=False), help="Write joint positions as CSV.")
-@click.option("--gui", is_flag=True, help="Show PyBullet's window.")
+@click.option("--gui", is_flag=True, help="Show PyBullet's window; MuJoCo has none.")
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Also write the episode here.")
 def command(
     instance: Path,
@@ -48,6 +49,7 @@ def command(
     scene: Path | None,
     noise: str | None,
     pace: float | None,
+    engine: str | None,
     no_replan: bool,
     replanner: str | None,
     budget: float,
@@ -58,15 +60,18 @@ def command(
     gui: bool,
     out: Path | None,
 ) -> None:
-    """Carry PLAN out with the Panda in PyBullet and print the episode as JSON; exit 5 where the execution failed.
+    """Carry PLAN out with the Panda in simulation and print the episode as JSON; exit 5 where the execution failed.
 
     \b
     Examples:
       smash execute examples/figure1.json plan.json --replay episode.html
       smash execute examples/figure1.json plan.json --seed 3 --no-replan
       smash execute examples/figure1.json plan.json --noise pose=3mm,yaw=2deg,friction=10% --pace 0.25
+      smash execute examples/figure1.json plan.json --engine mujoco
     """
     require("smash execute", *EXECUTION)
+    if engine is not None:
+        require_engine(engine)
     if video is not None:
         require("smash execute --video", "imageio")
     if stills is not None:
@@ -75,10 +80,12 @@ def command(
     if replanner is not None:
         _require_planner(replanner, no_replan)
     problem, filed = read_instance(instance), read_plan(plan)
+    from smash.execution.scene.scene_file import default_scene, read_scene
     from smash.execution.viewing.capture import Capture
     from smash.records.episodes import Performed, episode_text
 
     capture = Capture(replay=replay, video=video, stills=stills, trajectory=trajectory)
+    tabletop = default_scene() if scene is None else read_scene(scene)
     from rich.console import Console
     from rich.markup import escape
 
@@ -95,15 +102,17 @@ def command(
         filed,
         seed=seed,
         replan=not no_replan,
-        scene=scene,
+        scene=tabletop,
         noise=noise,
         pace=pace,
         replanner=replanner,
         budget=budget,
+        engine=engine,
         gui=gui,
         on_frame=capture.frame,
         on_step=shown,
     )
+    say_engine(executor.engine, tabletop, engine)
     with ended_by_signals():
         with status:
             episode = executor.run()

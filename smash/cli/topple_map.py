@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from smash.cli.choices import engine_option, say_engine
 from smash.cli.signals import stopped_by_signals
 from smash.problem.errors import Interrupted
 from smash.problem.extras import EXECUTION, require
@@ -27,9 +28,12 @@ if TYPE_CHECKING:
 )
 @click.option("--seeds", type=click.IntRange(min=1), default=4, show_default=True, metavar="N", help="Trials of each.")
 @click.option("--scene", type=click.Path(path_type=Path), help="Scene file (default: the built-in scene).")
+@engine_option
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="At a time.")
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=Path("runs/topple-map"))
-def command(highest_cut: int, most: int, seeds: int, scene: Path | None, jobs: int, out: Path) -> None:
+def command(
+    highest_cut: int, most: int, seeds: int, scene: Path | None, engine: str | None, jobs: int, out: Path
+) -> None:
     """Topple piles of up to 9 blocks in simulation; write trials.jsonl, estimates.json and map.png to OUT.
 
     It may be stopped at any moment: start it again and it does the trials that are left.
@@ -38,6 +42,7 @@ def command(highest_cut: int, most: int, seeds: int, scene: Path | None, jobs: i
     Example:
       smash topple-map --highest-cut 3 --most 5 --jobs 2
     """
+    from smash.execution.physics.engines import engine_of
     from smash.execution.scene.scene_file import default_scene, read_scene
     from smash.execution.trials.estimates import ENOUGH, TRUSTED, write_estimates
     from smash.execution.trials.topple_map import draw, estimates
@@ -46,8 +51,10 @@ def command(highest_cut: int, most: int, seeds: int, scene: Path | None, jobs: i
     from smash.records.writing import Writer
 
     tabletop = default_scene() if scene is None else read_scene(scene)
+    named, engine = engine, engine_of(tabletop, engine)
+    say_engine(engine, tabletop, named)
     trials: dict[Hashable, Trial] = {}
-    wanted = wanted_trials(tabletop, highest_cut, most, seeds)
+    wanted = wanted_trials(tabletop, engine, highest_cut, most, seeds)
 
     def ended(trial: Trial) -> None:
         trials[trial.key] = trial
@@ -59,7 +66,7 @@ def command(highest_cut: int, most: int, seeds: int, scene: Path | None, jobs: i
         trials |= {trial.key: trial for trial in records.earlier}
         for line in records.set_aside:
             click.echo(one_line(f"{line}: damaged: set aside, its trial is done again"), err=True)
-        run_trials(tabletop, wanted, records, jobs, stop, ended)
+        run_trials(tabletop, engine, wanted, records, jobs, stop, ended)
         if stop.is_set():
             raise Interrupted("interrupted; every finished trial is recorded, start again to do the rest")
     chosen = [trials[key] for key in wanted]

@@ -17,7 +17,8 @@ from smash.execution.actions.arm_motions import ArmMotions
 from smash.execution.errors import Blind, Fell, NotAtGoal
 from smash.execution.grounding import Grounder, Task
 from smash.execution.performing import SURE, Performer
-from smash.execution.physics.world import Frame, World
+from smash.execution.physics.engines import engine_of, world_of
+from smash.execution.physics.world import Frame
 from smash.execution.policy import Policy
 from smash.execution.readback import NOWHERE, fallen_off
 from smash.execution.recovery import Recovery
@@ -55,13 +56,14 @@ class Executor:
         seed: Of the blocks' start and of the motion planner.
         policy: What to do about failures.
         replanner: Plans the task anew from what is observed.
-        gui: Open PyBullet's window.
+        engine: What simulates it; the scene's, or the one that is there, where none is named.
+        gui: Open the engine's window.
         on_frame: Called with the world 25 times a simulated second.
         on_step: Called with each action before it is carried out.
 
     Raises:
         DoesNotFit: where the scene has no room for the instance.
-        Unsupported: where a block is in the hand at the start.
+        Unsupported: where a block is in the hand at the start, or the engine is not installed.
     """
 
     def __init__(
@@ -73,6 +75,7 @@ class Executor:
         seed: int = 0,
         policy: Policy | None = None,
         replanner: Replanner | None = None,
+        engine: str | None = None,
         gui: bool = False,
         on_frame: Frame | None = None,
         on_step: Callable[[Performed], object] | None = None,
@@ -88,6 +91,7 @@ class Executor:
         self.seed = seed
         self.policy = policy or Policy()
         self.replanner = replanner
+        self.engine = engine_of(tabletop, engine)
         self.law = Law(instance, plan.options)
         self.table = Geometry(tabletop.bind(instance), tabletop.bind_stations(instance))
         self.arm = ArmMotions(tabletop, seed)
@@ -107,7 +111,7 @@ class Executor:
         generator = np.random.default_rng(self.seed)
         carriers = starting_carriers(self.instance, self.table.stations, self.tabletop)
         poses = starting_poses(self.instance, self.table.slots, self.tabletop, generator, carriers)
-        world = World(
+        world = world_of(self.engine)(
             self.chance.scene(),
             self.chance.at_start(poses),
             READY,
@@ -317,6 +321,7 @@ class Executor:
             topple=self.plan.options.topple,
             max_topple=self.plan.options.max_topple,
             scene=self.tabletop.name,
+            engine=self.engine,
             seed=self.seed,
             replanning=self.policy.replans > 0,
             success=failure is None,

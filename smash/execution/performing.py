@@ -234,7 +234,7 @@ class Performer:
     def _require_grasp(self, block: str) -> None:
         """Raise `Slip`, the hand opened, unless the block is between the fingers."""
         away = float(np.linalg.norm(self.look().blocks[block].position - self.world.tool_position()))
-        holds = self.world.finger_opening() > HELD_OPENING * self.side
+        holds = self.world.fingers().mean() > HELD_OPENING * self.side
         if away < GRASPED_WITHIN * self.side if self.sight.exact else holds:
             return
         self.world.grip(self.side / 2 + OPENINGS[0], OPEN_SECONDS)

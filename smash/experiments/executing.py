@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from smash.experiments.episodes.executors import executor_of
 from smash.problem.arguments import whole_number
 from smash.problem.errors import SmashError
-from smash.problem.extras import EXECUTION, require
+from smash.problem.extras import EXECUTION, require, require_engine
 from smash.problem.files.given import GivenInstance, GivenPlan, given_instance, given_plan
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ def execute(
     engine: str | None = None,
     robot: str | None = None,
 ) -> Episode:
-    """Carry a plan out with the Panda in PyBullet and say how it went. A failed execution is no exception.
+    """Carry a plan out with the Panda in simulation and say how it went. A failed execution is no exception.
 
     Example:
         `smash.execute(instance, smash.plan(instance)).success`
@@ -42,22 +42,26 @@ def execute(
         scene: the path of a scene file, or a scene (None: the built-in one).
         noise: what is not known exactly, as in `"pose=3mm,yaw=2deg,friction=10%"` (None: what the scene says).
         pace: share of the arm's velocity and acceleration limits that motions use (None: what the scene says).
-        engine: None; PyBullet is the one that there is.
+        engine: `pybullet` or `mujoco` (None: the scene's, else PyBullet, else MuJoCo where that is what is installed).
         robot: None; the Panda is the one that there is.
 
     Returns:
-        The episode: `success`, `failure` (name, step, action, reason), times, and each action as it was performed.
+        The episode: `success`, `failure` (name, step, action, reason), `engine`, times, and each action as
+        it was performed.
 
     Raises:
-        MissingExtra: where the extra `execution` is not installed.
+        MissingExtra: where the extra `execution`, or the engine, is not installed.
         RefusedPlan: where the law refuses the plan.
         SmashError: where an argument is wrong, or the scene has no place for the instance.
     """
     require("execute", *EXECUTION)
-    for what, asked in (("engine", engine), ("robot", robot)):
-        if asked is not None:
-            raise SmashError(f"{what}: {asked!r} is not allowed; there is no choice of one, None is allowed")
+    if engine is not None:
+        require_engine(engine)
+    if robot is not None:
+        raise SmashError(f"robot: {robot!r} is not allowed; there is no choice of one, None is allowed")
     whole_number("seed", seed, 0, 2**31 - 1)
     problem = given_instance(instance)
-    asked_plan = given_plan(plan, problem)
-    return executor_of(problem, asked_plan, seed=seed, replan=replan, scene=scene, noise=noise, pace=pace).run()
+    made = given_plan(plan, problem)
+    return executor_of(
+        problem, made, seed=seed, replan=replan, scene=scene, noise=noise, pace=pace, engine=engine
+    ).run()

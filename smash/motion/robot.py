@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pinocchio
-import pybullet_data
 from numpy.typing import NDArray
 
 from smash.motion.poses import Matrix, ToolPose, Vector
@@ -32,8 +31,11 @@ FINGERTIP_BEYOND_TOOL = 0.0072
 
 
 def panda_urdf() -> Path:
-    """The Panda that `pybullet_data` ships: the same file for the simulator, the kinematics and the hulls."""
-    return Path(pybullet_data.getDataPath()) / "franka_panda" / "panda.urdf"
+    """The Panda of the package: the same file for every simulator, the kinematics and the hulls.
+
+    It is the one of `pybullet_data` (Apache-2.0, its licence lies beside it) with the meshes that collide alone.
+    """
+    return Path(__file__).parent / "robots" / "panda" / "panda.urdf"
 
 
 class Panda:

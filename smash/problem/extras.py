@@ -5,13 +5,14 @@ from __future__ import annotations
 import sys
 from importlib.util import find_spec
 
-from smash.problem.errors import Unsupported
+from smash.problem.errors import SmashError, Unsupported
 
 EXTRAS: dict[str, tuple[str, ...]] = {
     "analysis": ("matplotlib", "pandas", "jinja2"),
     "parquet": ("pyarrow",),
     "pddl": ("unified_planning", "up_fast_downward", "up_symk", "up_enhsp", "up_aries"),
-    "execution": ("pybullet", "pybullet_data", "ompl", "pinocchio", "coal", "toppra", "scipy", "meshcat", "imageio"),
+    "execution": ("pybullet", "ompl", "pinocchio", "coal", "toppra", "scipy", "meshcat", "imageio"),
+    "mujoco": ("mujoco",),
     "cluster": ("dask", "distributed"),
     "gurobi": ("gurobipy", "scipy"),
     "cp-sat": ("ortools",),
@@ -22,10 +23,14 @@ EXTRAS: dict[str, tuple[str, ...]] = {
 }
 """Extra -> the modules that come with it."""
 
-NO_WHEELS = {"pybullet": (3, 12), "pybullet_data": (3, 12)}
+NO_WHEELS = {"pybullet": (3, 12)}
 """Module -> the first Python that it has no wheels for."""
-EXECUTION = ("pybullet", "ompl", "pinocchio", "coal", "toppra")
-"""What an episode is carried out with."""
+INSTEAD = {"pybullet": "mujoco"}
+"""Module -> what does the same where it has no wheels."""
+EXECUTION = ("ompl", "pinocchio", "coal", "toppra")
+"""What an episode is carried out with, beside an engine."""
+ENGINES = {"pybullet": "pybullet", "mujoco": "mujoco"}
+"""What simulates an episode -> its module; the first one that is there is used where none is named."""
 TABLES = ("pandas", "matplotlib", "jinja2")
 """What records become tables, charts and pages with."""
 
@@ -40,11 +45,17 @@ class MissingExtra(Unsupported):
 
 def _wanting(module: str) -> str:
     """Return how to get a module, or why it is not to be had here."""
-    limit = NO_WHEELS.get(module)
-    if limit is None or sys.version_info[:2] < limit:
+    if not _has_no_wheels(module):
         return f": {install_line(module)}"
+    limit = NO_WHEELS[module]
     here, before = ".".join(map(str, sys.version_info[:2])), f"{limit[0]}.{limit[1] - 1}"
-    return f", which has no wheels for Python {here}: use Python {before}"
+    way_out = f", which has no wheels for Python {here}: use Python {before}"
+    other = INSTEAD.get(module)
+    return way_out if other is None else f"{way_out}, or {other}: {install_line(other)}"
+
+
+def _has_no_wheels(module: str) -> bool:
+    return module in NO_WHEELS and sys.version_info[:2] >= NO_WHEELS[module]
 
 
 def require(who: str, *modules: str) -> None:
@@ -60,6 +71,25 @@ def require(who: str, *modules: str) -> None:
     for module in modules:
         if not is_there(module):
             raise MissingExtra(who, module)
+
+
+def default_engine() -> str:
+    """Return the engine that is used where none is named: the first one that is there, else the one to install."""
+    there = [engine for engine, module in ENGINES.items() if is_there(module)]
+    to_be_had = [engine for engine, module in ENGINES.items() if not _has_no_wheels(module)]
+    return (there or to_be_had)[0]
+
+
+def require_engine(engine: str) -> None:
+    """Refuse an engine that cannot simulate anything here.
+
+    Raises:
+        MissingExtra: where it is not there.
+        SmashError: where there is none of that name.
+    """
+    if engine not in ENGINES:
+        raise SmashError(f"engine: {engine!r} is not allowed; {' or '.join(map(repr, ENGINES))} is allowed")
+    require(f"the engine {engine}", ENGINES[engine])
 
 
 def is_there(module: str) -> bool:

@@ -93,7 +93,7 @@ class Arrangement(msgspec.Struct, kw_only=True):
 
 
 class Episode(msgspec.Struct, kw_only=True):
-    """An executed plan.
+    """An executed plan; one without an `engine` was recorded when there was PyBullet alone.
 
     Attributes:
         noise: What was not known exactly, and how much of it [m, rad, share]; what is left out was.
@@ -106,6 +106,7 @@ class Episode(msgspec.Struct, kw_only=True):
     topple: bool
     max_topple: int | None
     scene: str
+    engine: str = "pybullet"
     seed: int
     replanning: bool
     success: bool
@@ -133,9 +134,10 @@ class EpisodeRecord(Record, kw_only=True, frozen=True):
     """One episode of a sweep's plan: the plan's run, how it was carried out, where, and the episode itself.
 
     Attributes:
-        key: Names it for good: the run's key, policy, seed, scene.
+        key: Names it for good: the run's key, policy, seed, scene, and the engine where it is not PyBullet.
         run: Key of the run whose plan it carries out; what was planned stands beside it.
         scene: Name of the scene file; None for the built-in scene.
+        engine: What simulated it; a record that does not say so is from when there was PyBullet alone.
         depth: Of a single target in its start pile, the top being 1; None for other goals.
         episode: None where its process ended without one; `problem` says why.
     """
@@ -150,6 +152,7 @@ class EpisodeRecord(Record, kw_only=True, frozen=True):
     policy: str
     seed: int
     scene: str | None
+    engine: str = "pybullet"
     blocks: int
     depth: int | None
     cost: int

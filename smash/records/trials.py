@@ -10,7 +10,13 @@ from smash.records.record import Record
 
 TRIAL_FORMAT: Final = "smash-topple-trial/1"
 Key = tuple[str, int, int, int, int]
-"""What tells a trial from the others: the scene's fingerprint, stack, height of the cut, number falling, seed."""
+"""What tells a trial from the others: the scene's fingerprint (and the engine where it is not PyBullet), stack, height
+of the cut, number falling, seed."""
+
+
+def simulated(layout: str, engine: str) -> str:
+    """Return what a scene of this fingerprint is called in the keys of an engine's trials."""
+    return layout if engine == "pybullet" else f"{layout}/{engine}"
 
 
 class Landing(msgspec.Struct, frozen=True):
@@ -27,6 +33,7 @@ class Trial(Record, kw_only=True, frozen=True):
 
     Attributes:
         layout: The scene's fingerprint.
+        engine: What simulated it; a record that does not say so is from when there was PyBullet alone.
         stack: Index of the scene's stack.
         height: Lowest level that falls, 1 is the bottom.
         falling: Number of blocks that fall.
@@ -40,6 +47,7 @@ class Trial(Record, kw_only=True, frozen=True):
     format: Literal["smash-topple-trial/1"] = TRIAL_FORMAT
     scene: str
     layout: str = ""
+    engine: str = "pybullet"
     stack: int
     height: int
     falling: int
@@ -52,7 +60,7 @@ class Trial(Record, kw_only=True, frozen=True):
     @property
     def key(self) -> Key:
         """What tells a trial from the others."""
-        return self.layout, self.stack, self.height, self.falling, self.seed
+        return simulated(self.layout, self.engine), self.stack, self.height, self.falling, self.seed
 
     @property
     def success(self) -> bool:

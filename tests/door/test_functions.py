@@ -10,7 +10,7 @@ import smash
 from smash.planners.registry import UnknownPlanner
 from smash.problem import MalformedFile, PlannerCrashed, PlannerOutOfMemory, Unsupported
 from smash.problem.errors import RefusedPlan
-from smash.problem.extras import EXTRAS, MissingExtra
+from smash.problem.extras import ENGINES, EXTRAS, MissingExtra
 from tests.door.missing import HIDDEN
 
 ROOT = Path(__file__).parents[2]
@@ -200,8 +200,11 @@ def test_what_cannot_be_carried_out_is_said():
     pytest.importorskip("pybullet")
     with pytest.raises(RefusedPlan, match="goal not reached"):
         smash.execute(FIGURE_1, [])
-    for more in ({"engine": "mujoco"}, {"robot": "ur5"}):
-        with pytest.raises(smash.SmashError, match="None is allowed"):
+    for more, words in (
+        ({"engine": "ode"}, "'pybullet' or 'mujoco' is allowed"),
+        ({"robot": "ur5"}, "None is allowed"),
+    ):
+        with pytest.raises(smash.SmashError, match=words):
             smash.execute(FIGURE_1, [], **more)
     with pytest.raises(MalformedFile, match="cannot be read"):
         smash.execute(FIGURE_1, smash.plan(FIGURE_1), scene="nowhere.toml")
@@ -219,10 +222,6 @@ def without(packages, program, *arguments):
 
 
 PLANNED = "import smash; i = smash.make_instance({'s1': ['a']}, {'s2': ['a']}); p = smash.plan(i); smash.check(i, p)\n"
-BULLET = ": pip install 'smash-testbed[execution]'"
-if sys.version_info >= (3, 12):
-    BULLET = f", which has no wheels for Python 3.{sys.version_info.minor}: use Python 3.11"
-"""What is said of PyBullet where it is wanted."""
 COMMAND = "from smash.cli import main\nmain()\n"
 
 
@@ -231,7 +230,7 @@ COMMAND = "from smash.cli import main\nmain()\n"
     [
         ("smash.draw(i, p)", "draw needs matplotlib: pip install 'smash-testbed[analysis]'"),
         ("smash.compare([i], ['smash'])", "compare needs pandas: pip install 'smash-testbed[analysis]'"),
-        ("smash.execute(i, p)", f"execute needs pybullet{BULLET}"),
+        ("smash.execute(i, p)", "execute needs ompl: pip install 'smash-testbed[execution]'"),
     ],
 )
 def test_without_an_extra_one_line_says_how_to_get_it(call, words):
@@ -260,8 +259,22 @@ def test_a_command_without_its_extra_is_one_line_and_exit_code_6(arguments, extr
     ended = without(EXTRAS[extra], COMMAND, *arguments)
     assert ended.returncode == 6, ended.stderr
     assert ended.stderr.count("\n") == 1
-    line = BULLET if "pybullet" in ended.stderr else f": pip install 'smash-testbed[{extra}]'"
-    assert ended.stderr.endswith(f"{line}\n")
+    assert ended.stderr.endswith(f": pip install 'smash-testbed[{extra}]'\n")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_an_engine_that_is_not_there_is_one_line_and_exit_code_6(engine, tmp_path):
+    pytest.importorskip("ompl")
+    (tmp_path / "scene.toml").write_text(
+        f'format = "smash-scene/1"\nbase = "default"\nname = "x"\nengine = "{engine}"\n'
+    )
+    smash.write_plan(smash.plan(FIGURE_1), tmp_path / "plan.json")
+    for words in (["--engine", engine], ["--scene", tmp_path / "scene.toml"]):
+        ended = without([ENGINES[engine]], COMMAND, "execute", FIGURE_1, tmp_path / "plan.json", *words)
+        assert ended.returncode == 6, ended.stderr
+        assert ended.stderr.count("\n") == 1
+        assert f"the engine {engine} needs {ENGINES[engine]}" in ended.stderr
+        assert "pip install 'smash-testbed[" in ended.stderr
 
 
 def test_an_engine_of_an_extra_that_is_not_there_says_how_to_get_it(monkeypatch):

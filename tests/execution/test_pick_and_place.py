@@ -8,7 +8,7 @@ from smash.execution.actions.arm_motions import RELEASE_HEIGHT, ArmMotions
 from smash.execution.actions.grasps import CENTRED, GRASPS
 from smash.execution.actions.pick_and_place import ROOM, PickAndPlace
 from smash.execution.performing import follow
-from smash.execution.physics.world import World
+from smash.execution.physics.engines import engine_of, world_of
 from smash.execution.scene.block_pose import QUARTER, BlockPose, standing
 from smash.execution.scene.scene_file import default_scene
 from smash.motion.collision import CONTACT_MARGIN, CollisionChecker
@@ -95,7 +95,7 @@ def test_a_block_held_beside_its_middle_or_leaning_stands_where_it_shall_then(ar
     monkeypatch.setattr(pick_and_place, "GRASPS", (grasp,))
     block, walls = tower_beside(0.058, levels)
     target = standing(*default_scene().stacks[2].point(0.0, 0.0, "outward"), 0.5 * SIDE, 0.2)
-    with World(default_scene(), {"a": block, **walls}, READY) as world:
+    with world_of(engine_of(default_scene()))(default_scene(), {"a": block, **walls}, READY) as world:
         world.settle()
         segments, held = hand.pick(READY, "a", world.pose("a"), arm.scene(world.poses()))
         follow(world, segments)

@@ -12,6 +12,7 @@ import pandas as pd
 from smash.problem.errors import MalformedFile
 from smash.problem.words import visible
 from smash.records.believing import believed
+from smash.records.engines import require_one_engine
 from smash.records.episodes import EpisodeRecord
 from smash.records.files import EPISODES, RUNS, TRIALS, R, RecordFile
 from smash.records.reading import NoRecords, Reading, read
@@ -69,6 +70,7 @@ def find_sources(results: Path, out: Path) -> list[Source]:
 
     Raises:
         NoRecords: where there is no record at all.
+        MixedEngines: where a directory's episodes or topples were simulated by several engines.
     """
     if not results.is_dir():
         raise NoRecords(str(results), "no such directory")
@@ -104,6 +106,8 @@ def _read(directory: Path, results: Path) -> Source:
         source.notes += [visible(line) for line in found.rest()]
     source.episodes = _records(source, EPISODES)
     source.trials = _records(source, TRIALS)
+    require_one_engine(source.name, "episodes", (record.engine for record in source.episodes))
+    require_one_engine(source.name, "topples", (trial.engine for trial in source.trials))
     if not source.runs and (directory / SCALING).is_file():
         source.scaling = _scaling(directory / SCALING, source.problems)
     return source

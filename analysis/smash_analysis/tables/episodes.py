@@ -13,7 +13,9 @@ from smash_analysis.tables.actions import ACTION_COLUMNS, named
 
 TIMES = ("offline", "offline_cpu", "online", "online_cpu", "execution")
 EPISODE_TYPES = {
-    **dict.fromkeys(("key", "run", "suite", "instance", "label", "variant", "policy", "scene", "status"), "string"),
+    **dict.fromkeys(
+        ("key", "run", "suite", "instance", "label", "variant", "policy", "scene", "engine", "status"), "string"
+    ),
     **dict.fromkeys(("seed", "blocks", "cost"), "int64"),
     "depth": "Int64",
     **dict.fromkeys(("budget", "first_plan_seconds", "best_plan_seconds"), "float64"),

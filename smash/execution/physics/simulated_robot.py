@@ -22,15 +22,16 @@ FINGER_SIDES = {"panda_leftfinger": 1.0, "panda_rightfinger": -1.0}
 
 @contextmanager
 def simulated_panda() -> Iterator[Path]:
-    """A URDF file for the simulator, for as long as the context is open."""
+    """A URDF file for a simulator, for as long as the context is open."""
     with TemporaryDirectory(prefix="smash-") as directory:
         path = Path(directory) / "panda.urdf"
-        path.write_text(_document(), encoding="utf-8")
+        path.write_text(panda_text(), encoding="utf-8")
         yield path
 
 
 @cache
-def _document() -> str:
+def panda_text() -> str:
+    """The same as text; its meshes are named by absolute paths."""
     shipped = panda_urdf()
     # Meshes are named relative to the shipped file; the copy lies elsewhere.
     robot = ET.fromstring(shipped.read_text(encoding="utf-8").replace("package://", f"{shipped.parent}/"))

@@ -49,3 +49,10 @@ def standing(x: float, y: float, z: float, yaw: float) -> BlockPose:
     """The pose of a block that stands upright with its centre at x, y, z [m], turned by `yaw` [rad]."""
     rotation = np.array([[cos(yaw), -sin(yaw), 0.0], [sin(yaw), cos(yaw), 0.0], [0.0, 0.0, 1.0]])
     return BlockPose(np.array([x, y, z]), rotation)
+
+
+def quaternion_of(rotation: NDArray[np.float64]) -> list[float]:
+    """Quaternion x, y, z, w of a rotation about the vertical followed by nothing else, or of any rotation matrix."""
+    from scipy.spatial.transform import Rotation
+
+    return [float(value) for value in Rotation.from_matrix(rotation).as_quat()]

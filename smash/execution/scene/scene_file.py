@@ -76,6 +76,7 @@ class _SceneFile(msgspec.Struct, forbid_unknown_fields=True):
     name: str
     stacks: list[_StackFile]
     base: Literal["default"] | None = None
+    engine: Literal["pybullet", "mujoco"] | None = None
     block: _BlockFile = msgspec.field(default_factory=_BlockFile)
     friction: _FrictionFile = msgspec.field(default_factory=_FrictionFile)
     speed: _SpeedFile = msgspec.field(default_factory=_SpeedFile)
@@ -129,6 +130,7 @@ def scene_from_document(document: Any, where: str = "scene") -> Tabletop:
         stacks=tuple(Slot(s.radius, radians(s.angle), tuple(s.topple)) for s in file.stacks),
         buffers=tuple(Slot(b.radius, radians(b.angle)) for b in file.buffers),
         noise=_noise(file.noise, where),
+        engine=file.engine,
     )
     if file.stations:
         tray, stations = Tray(file.block.side, **msgspec.to_builtins(file.tray)), file.stations

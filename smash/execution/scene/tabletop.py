@@ -133,6 +133,7 @@ class Tabletop:
         tray: What carriers are; none in a scene without stations.
         stations: Slots that trays can stand at, their length across the bearing.
         noise: What an episode does not know exactly.
+        engine: What simulates it where nothing else is named; no part of the fingerprint.
     """
 
     name: str
@@ -146,6 +147,7 @@ class Tabletop:
     tray: Tray | None = None
     stations: tuple[Slot, ...] = ()
     noise: Noise = field(default=Noise(), repr=False)
+    engine: str | None = field(default=None, repr=False)
 
     @property
     def slots(self) -> tuple[Slot, ...]:

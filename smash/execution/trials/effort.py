@@ -1,6 +1,6 @@
 """What an episode asks of the arm: its motions beside the Panda's limits, its motors, how well it follows.
 
-    python -m smash.execution.trials.effort INSTANCE PLAN [--seed S]
+    python -m smash.execution.trials.effort INSTANCE PLAN [--seed S] [--engine E]
 
 carries the plan out without replanning and prints a table. What is sent to the arm is ours; torques are those of the
 simulated motors, which hold a position: where the hand meets a block, they jump.
@@ -15,10 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from smash.execution.executor import Executor
-from smash.execution.physics.world import ARM, ARM_FORCE, STEP, World
+from smash.execution.physics.world import ARM_FORCE, STEP, World
 from smash.execution.policy import OPEN
 from smash.execution.scene.scene_file import default_scene
 from smash.motion.robot import ACCELERATION, JERK, VELOCITY
+from smash.problem.extras import ENGINES
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import read_plan
 from smash.records.episodes import Episode
@@ -38,18 +39,17 @@ class Effort:
     """
 
     sent: list[NDArray[np.float64]] = field(default_factory=list)
-    measured: list[list[float]] = field(default_factory=list)
-    torques: list[list[float]] = field(default_factory=list)
+    measured: list[NDArray[np.float64]] = field(default_factory=list)
+    torques: list[NDArray[np.float64]] = field(default_factory=list)
 
     def begin(self, world: World) -> None:
         """Sample from now on."""
         world.on_step = self._sample
 
     def _sample(self, world: World) -> None:
-        states = world.client.getJointStates(world.robot, ARM)
         self.sent.append(world.recorded[-1][1])
-        self.measured.append([state[0] for state in states])
-        self.torques.append([state[3] for state in states])
+        self.measured.append(world.joints())
+        self.torques.append(world.torques())
 
     def rows(self) -> list[tuple[str, str]]:
         """What was measured, and its figure."""
@@ -95,6 +95,7 @@ def main() -> None:
     parser.add_argument("instance", help="an instance file")
     parser.add_argument("plan", help="a plan for it")
     parser.add_argument("--seed", type=int, default=0, help="of the blocks' start poses")
+    parser.add_argument("--engine", choices=list(ENGINES), help="what simulates it")
     asked = parser.parse_args()
     effort = Effort()
     executor = Executor(
@@ -103,6 +104,7 @@ def main() -> None:
         default_scene(),
         seed=asked.seed,
         policy=OPEN,
+        engine=asked.engine,
         on_frame=effort.begin,
     )
     print(report(effort, executor.run()))

@@ -17,7 +17,7 @@ from smash.execution.actions.pick_and_place import PickAndPlace
 from smash.execution.actions.topple import strip
 from smash.execution.grounding import Grounder, Task
 from smash.execution.performing import Performer
-from smash.execution.physics.world import World
+from smash.execution.physics.engines import engine_of, world_of
 from smash.execution.policy import OPEN
 from smash.execution.readback import read_state
 from smash.execution.scene.block_pose import BlockPose
@@ -38,8 +38,18 @@ from smash.records.episodes import Performed
 from smash.records.trials import Landing, Trial
 
 
-def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: int) -> Trial:
-    """Topple `falling` blocks from `height` upward off one of the scene's stacks."""
+def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: int, engine: str | None = None) -> Trial:
+    """Topple `falling` blocks from `height` upward off one of the scene's stacks.
+
+    Args:
+        tabletop: The scene.
+        stack: Index of the stack.
+        height: Lowest level that falls, 1 is the bottom.
+        falling: Number of blocks that fall.
+        seed: Of the start poses.
+        engine: What simulates it; the scene's, or the one that is there, where none is named.
+    """
+    engine = engine_of(tabletop, engine)
     names = [f"b{level}" for level in range(1, height + falling)]
     location, slot = f"s{stack}", tabletop.stacks[stack]
     instance = make_instance(
@@ -51,9 +61,15 @@ def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: i
     arm = ArmMotions(tabletop, seed)
     action = Topple(location, height)
     blank = Trial(
-        scene=tabletop.name, layout=tabletop.fingerprint, stack=stack, height=height, falling=falling, seed=seed
+        scene=tabletop.name,
+        layout=tabletop.fingerprint,
+        engine=engine,
+        stack=stack,
+        height=height,
+        falling=falling,
+        seed=seed,
     )
-    with World(chance.scene(), poses, READY, made=chance.made) as world:
+    with world_of(engine)(chance.scene(), poses, READY, made=chance.made) as world:
         world.settle()
         before = world.poses()
         performer = Performer(world, Grounder(arm), Geometry(slots), OPEN, Sight(world, chance))

@@ -12,7 +12,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from smash.execution.physics.world import ARM, FINGERS, connect
+from smash.execution.physics.pybullet_world import ARM, FINGERS, connect
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.viewing.recording import Recording
 from smash.records.episodes import Episode

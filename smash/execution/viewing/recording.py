@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from smash.execution.physics.world import ARM, FINGERS, World
+from smash.execution.physics.world import World
+from smash.execution.scene.block_pose import BlockPose, quaternion_of
 
-LINKS = (*ARM, 8, *FINGERS)
-"""PyBullet's numbers of the links that are drawn: arm, hand, fingers (the base stands still)."""
 INTERVAL = 0.08
 """Simulated time between two frames [s]."""
 
@@ -24,7 +22,7 @@ class Recording:
     Attributes:
         times: [s], one per frame.
         joints: Arm and finger joints per frame, shape (9,) [rad, m].
-        links: Position and quaternion of the links of `LINKS` per frame, shape (10, 7) [m].
+        links: Position and quaternion of links 1 to 7, hand and fingers per frame, shape (10, 7) [m]; the base stands.
         blocks: Position and quaternion (x, y, z, w) of the blocks per frame, shape (B, 7) [m].
         trays: The same of the carriers, shape (C, 7).
     """
@@ -39,19 +37,16 @@ class Recording:
         """Add the present frame, if the last one is old enough."""
         if self.times and world.time - self.times[-1] < 0.9 * INTERVAL:
             return
-        client = world.client
-        states = client.getLinkStates(world.robot, LINKS, computeForwardKinematics=True)
         self.times.append(world.time)
-        self.joints.append(np.array([state[0] for state in client.getJointStates(world.robot, (*ARM, *FINGERS))]))
-        self.links.append(np.array([[*state[4], *state[5]] for state in states]))
-        self.blocks.append(_poses(client, world.bodies.values()))
-        self.trays.append(_poses(client, world.trays.values()))
+        self.joints.append(np.concatenate([world.joints(), world.fingers()]))
+        self.links.append(world.links())
+        self.blocks.append(_rows(world.poses().values()))
+        self.trays.append(_rows(world.carriers().values()))
 
     def at(self, moment: float) -> int:
         """Index of the last frame at or before `moment` [s]."""
         return max(0, int(np.searchsorted(self.times, moment + 1e-6)) - 1)
 
 
-def _poses(client: Any, bodies: Iterable[int]) -> NDArray[np.float64]:
-    poses = [client.getBasePositionAndOrientation(body) for body in bodies]
-    return np.array([[*position, *turn] for position, turn in poses]).reshape(-1, 7)
+def _rows(poses: Iterable[BlockPose]) -> NDArray[np.float64]:
+    return np.array([[*pose.position, *quaternion_of(pose.rotation)] for pose in poses]).reshape(-1, 7)

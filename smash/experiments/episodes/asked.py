@@ -20,13 +20,15 @@ ASKED = "episodes-asked.json"
 class Question(msgspec.Struct, frozen=True):
     """Every plan of these labels (of all where there are none), by these policies, under seeds 0 to `seeds` - 1.
 
-    `scene` is the name of a scene file with what tells its content from others, None for the built-in scene.
+    `scene` is the name of a scene file with what tells its content from others, None for the built-in scene; `engine`
+    is what simulates them.
     """
 
     seeds: int
     policies: list[str]
     scene: str | None = None
     labels: list[str] = []
+    engine: str = "pybullet"
 
 
 class Asked(msgspec.Struct, frozen=True):
@@ -44,10 +46,22 @@ def note_asked(
     labels: Sequence[str],
     noise: str | None = None,
     pace: float | None = None,
+    engine: str = "pybullet",
 ) -> None:
-    """Add a question to those of a results directory; one that stands there already is not added again."""
+    """Add a question to those of a results directory; one that stands there already is not added again.
+
+    Args:
+        results: the directory.
+        seeds: how many.
+        policies: of `smash.experiments.episodes.series.POLICIES`.
+        scene: a scene file, or None for the built-in scene.
+        labels: of planners; none means all.
+        noise: in place of the scene's own, or None.
+        pace: the same.
+        engine: what simulates them.
+    """
     before = _questions(results) or []
-    question = Question(seeds, list(policies), told_apart(scene, noise, pace), list(labels))
+    question = Question(seeds, list(policies), told_apart(scene, noise, pace), list(labels), engine)
     if question not in before:
         document = Asked("smash-episodes/1", [*before, question])
         text = msgspec.json.format(msgspec.json.encode(document), indent=1).decode()
@@ -67,7 +81,7 @@ def asked_runs(results: Path) -> list[EpisodeRun] | None:
     for question in questions:
         told = None if question.scene is None else question.scene.removesuffix(".toml").removesuffix(".json")
         seeds, policies, labels = range(question.seeds), question.policies, question.labels
-        for run in episode_runs(results, seeds, policies, labels=labels, told=told):
+        for run in episode_runs(results, seeds, policies, labels=labels, told=told, engine=question.engine):
             runs.setdefault(run.key, run)
     return list(runs.values())
 

@@ -31,6 +31,7 @@ def executor_of(
     pace: float | None = None,
     replanner: str | None = None,
     budget: float = REPLAN_BUDGET,
+    engine: str | None = None,
     gui: bool = False,
     on_frame: Frame | None = None,
     on_step: Callable[[Performed], Any] | None = None,
@@ -47,13 +48,14 @@ def executor_of(
         pace: share of the arm's velocity and acceleration limits that motions use (None: what the scene says).
         replanner: planner to replan with (None: the plan's own); `greedy` where nobody is called so.
         budget: wall time of each replanning [s].
-        gui: show PyBullet's window.
+        engine: what simulates it (None: the scene's, else the one that is there).
+        gui: show the engine's window.
         on_frame: called with the world 25 times a simulated second.
         on_step: called with each action before it is carried out.
 
     Raises:
         RefusedPlan: where the law refuses the plan.
-        Unsupported: where the hand holds a block at the start.
+        Unsupported: where the hand holds a block at the start, or the engine is not installed.
         SmashError: where the scene is malformed, or has no place for the instance.
     """
     verdict = check_plan(instance, plan)
@@ -71,6 +73,7 @@ def executor_of(
         seed=seed,
         policy=None if replan else OPEN,
         replanner=replanner_by(replanner or plan.planner, budget, seed) if replan else None,
+        engine=engine,
         gui=gui,
         on_frame=on_frame,
         on_step=on_step,

@@ -28,6 +28,7 @@ def carry_out(run: EpisodeRun) -> Episode:
         scene=run.scene,
         noise=run.noise,
         pace=run.pace,
+        engine=run.engine,
         on_frame=capture.frame,
     )
     episode = executor.run()

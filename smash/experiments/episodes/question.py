@@ -19,6 +19,7 @@ class EpisodeRun(msgspec.Struct, frozen=True):
         noise: In place of the scene's own, or None.
         pace: The same.
         replay: The page to write, or None.
+        engine: What simulates it.
     """
 
     record: RunRecord
@@ -29,8 +30,10 @@ class EpisodeRun(msgspec.Struct, frozen=True):
     replay: str | None = None
     noise: str | None = None
     pace: float | None = None
+    engine: str = "pybullet"
 
     @property
     def key(self) -> str:
         """Names the episode for good."""
-        return f"{self.record.key}/{self.policy}/{self.seed}" + (f"/{self.told}" if self.told else "")
+        words = [self.record.key, self.policy, str(self.seed), *filter(None, [self.told])]
+        return "/".join(words if self.engine == "pybullet" else [*words, self.engine])

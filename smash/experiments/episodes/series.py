@@ -70,6 +70,7 @@ def episode_runs(
     told: str | None = None,
     noise: str | None = None,
     pace: float | None = None,
+    engine: str = "pybullet",
 ) -> list[EpisodeRun]:
     """Return the episodes of all plans that a sweep has recorded, seed by seed, so that a part is a fair sample.
 
@@ -83,6 +84,7 @@ def episode_runs(
         told: What tells the scene from others; found out where it is not given.
         noise: In place of the scene's own.
         pace: The same.
+        engine: What simulates them.
 
     Raises:
         MalformedFile: where the records are damaged.
@@ -98,7 +100,7 @@ def episode_runs(
     plans = [record for record in plans if not labels or record.label in labels]
     told = told or told_apart(scene, noise, pace)
     runs = [
-        EpisodeRun(record, seed, policy, scene, told, noise=noise, pace=pace)
+        EpisodeRun(record, seed, policy, scene, told, noise=noise, pace=pace, engine=engine)
         for seed in seeds
         for record in plans
         for policy in policies
@@ -111,7 +113,8 @@ def episode_runs(
 
 def _replay(results: Path, run: EpisodeRun) -> str:
     """The page of an episode: instance, planner, variant and policy in words that any file system takes."""
-    words = (run.record.instance, run.record.label, run.record.variant, run.policy)
+    words = [run.record.instance, run.record.label, run.record.variant, run.policy]
+    words += [] if run.engine == "pybullet" else [run.engine]
     name = re.sub(r"[^A-Za-z0-9.-]+", "-", "_".join(words)).strip("-")
     return str((results / REPLAYS / f"{name}.html").resolve())
 
@@ -171,6 +174,7 @@ def _record(
         policy=run.policy,
         seed=run.seed,
         scene=scene_name(run.scene, run.noise, run.pace),
+        engine=run.engine,
         blocks=len(instance.blocks),
         depth=target_depth(instance),
         cost=plan.cost,
@@ -185,15 +189,15 @@ def _record(
         load_average=(before, load()),
         commit=commit(),
         machine=machine(),
-        versions=versions("greedy") | execution_versions(),
+        versions=versions("greedy") | execution_versions(run.engine),
     )
 
 
-def execution_versions() -> dict[str, str]:
-    """Return the versions of what moves and simulates the arm."""
+def execution_versions(engine: str) -> dict[str, str]:
+    """Return the versions of what moves the arm, and of the engine that simulates it."""
     from importlib.metadata import version
 
-    return {name: version(name) for name in ("pybullet", "ompl", "pin", "coal", "toppra")}
+    return {name: version(name) for name in (engine, "ompl", "pin", "coal", "toppra")}
 
 
 def target_depth(instance: Instance) -> int | None:

@@ -13,14 +13,14 @@ from smash.execution.scene.tabletop import Tabletop
 from smash.execution.trials.topple_map import run_trial
 from smash.experiments.isolation.lifetime import end_with_parent
 from smash.problem.errors import SmashError
-from smash.records.trials import Key, Trial
+from smash.records.trials import Key, Trial, simulated
 from smash.records.writing import Writer
 
 
-def wanted_trials(tabletop: Tabletop, highest_cut: int, most: int, seeds: int) -> list[Key]:
+def wanted_trials(tabletop: Tabletop, engine: str, highest_cut: int, most: int, seeds: int) -> list[Key]:
     """Return every trial that the scene allows: seeds first, so that a part is a fair sample; stacks in turn."""
     return [
-        (tabletop.fingerprint, seed % len(tabletop.stacks), height, falling, seed)
+        (simulated(tabletop.fingerprint, engine), seed % len(tabletop.stacks), height, falling, seed)
         for seed in range(seeds)
         for height in range(1, highest_cut + 1)
         for falling in range(1, most + 1)
@@ -30,6 +30,7 @@ def wanted_trials(tabletop: Tabletop, highest_cut: int, most: int, seeds: int) -
 
 def run_trials(
     tabletop: Tabletop,
+    engine: str,
     keys: Sequence[Key],
     records: Writer[Trial],
     jobs: int,
@@ -40,6 +41,7 @@ def run_trials(
 
     Args:
         tabletop: the scene.
+        engine: what simulates them.
         keys: the trials that are wanted.
         records: where each is recorded as it ends.
         jobs: how many run at a time.
@@ -53,7 +55,7 @@ def run_trials(
     pool = ProcessPoolExecutor(jobs, mp_context=context, initializer=end_with_parent, initargs=(os.getpid(),))
     left = [key for key in keys if key not in records.finished]
     try:
-        waiting: set[Future[Trial]] = {pool.submit(run_trial, tabletop, *key[1:]) for key in left}
+        waiting: set[Future[Trial]] = {pool.submit(run_trial, tabletop, *key[1:], engine) for key in left}
         while waiting and not stop.is_set():
             done, waiting = wait(waiting, timeout=0.5, return_when=FIRST_COMPLETED)
             for trial in (future.result() for future in done):

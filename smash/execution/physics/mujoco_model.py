@@ -1,0 +1,207 @@
+"""The scene as a MuJoCo model: the Panda's own URDF, the table, the blocks and the trays.
+
+MuJoCo takes for the friction of a contact what the geometry of the higher priority says, and the greater value where
+priorities are equal; the scene's coefficients multiply. So blocks have the lowest priority and their own product, and
+what touches blocks has the product with theirs. What a tray has with table and fingers are pairs of their own.
+"""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Mapping
+from functools import cache
+from itertools import combinations
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from smash.execution.physics.simulated_robot import FINGER_SIDES, panda_text
+from smash.execution.physics.world import ARM_FORCE, FINGER_FORCE
+from smash.execution.scene.block_pose import BlockPose, quaternion_of
+from smash.execution.scene.noise import Made
+from smash.execution.scene.tabletop import Friction, Tabletop
+from smash.motion.robot import ARM_JOINTS
+
+TIME_STEP = 1 / 960
+"""[s]."""
+IMPEDANCE_RATIO = 10.0
+"""Friction is so much stiffer than what keeps bodies apart: held blocks creep less."""
+CONTACT = (2 * TIME_STEP, 1.0)
+"""Time constant [s] and damping ratio of contacts, the stiffest that is stable: MuJoCo's own 0.02 s lets a block slip
+out of the hand."""
+IMPEDANCE = (0.95, 0.99, 0.001, 0.5, 2.0)
+TORSION, ROLLING = 0.005, 0.0001
+"""Friction against turning about the normal [m] and against rolling [m]."""
+STIFFNESS = (4500.0, 4500.0, 3500.0, 3500.0, 2000.0, 2000.0, 2000.0)
+"""Of the arm's motors [Nm/rad]; a tenth of it is their damping [Nm s/rad]."""
+DAMPING_SHARE = 0.1
+FINGER_STIFFNESS, FINGER_DAMPING = 5000.0, 100.0
+"""Of the fingers' motors [N/m], [N s/m]."""
+FINGER_JOINTS = ("panda_finger_joint1", "panda_finger_joint2")
+LINKS = (*(f"panda_link{number}" for number in range(1, 8)), "panda_hand", *FINGER_SIDES)
+"""The robot's bodies that move."""
+TOOL = "panda_grasptarget"
+LINK_FRICTION = 0.5
+"""Of arm and hand, as PyBullet has it where nothing is said."""
+BLOCKS, ROBOT, GROUND, TRAYS = 1, 2, 4, 8
+"""What collides with what: bits of `contype` and `conaffinity`. The robot does not meet itself."""
+
+
+def block_body(name: str) -> str:
+    """What the body of a block is called in the model, and its geometry."""
+    return f"block {name}"
+
+
+def carrier_body(name: str) -> str:
+    """What the body of a carrier is called in the model."""
+    return f"carrier {name}"
+
+
+def build(
+    tabletop: Tabletop,
+    blocks: Mapping[str, BlockPose],
+    carriers: Mapping[str, BlockPose],
+    made: Mapping[str, Made],
+) -> Any:
+    """Compile the model of an episode's start.
+
+    Args:
+        tabletop: Sizes, masses, friction.
+        blocks: Poses of the blocks by name.
+        carriers: Poses of the carriers by name.
+        made: Each block as it is.
+    """
+    spec = mujoco.MjSpec.from_string(_robot_document())
+    spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE
+    _set_options(spec)
+    _dress_robot(spec, tabletop.friction)
+    top = spec.worldbody.add_geom(
+        name="table", type=mujoco.mjtGeom.mjGEOM_BOX, size=[1.5, 1.5, 0.05], pos=[0.0, 0.0, -0.05]
+    )
+    _surface(top, tabletop.friction.block * tabletop.friction.table, 1, GROUND, BLOCKS | ROBOT | TRAYS)
+    for name, pose in blocks.items():
+        body = _free_body(spec, block_body(name), pose)
+        box = body.add_geom(
+            name=block_body(name), type=mujoco.mjtGeom.mjGEOM_BOX, size=[made[name].side / 2] * 3, mass=made[name].mass
+        )
+        _surface(box, tabletop.friction.block**2, 0, BLOCKS, BLOCKS | ROBOT | GROUND | TRAYS)
+    if any(block.friction != tabletop.friction.block for block in made.values()):
+        _pair_blocks(spec, tabletop.friction, made)
+    for name, pose in carriers.items():
+        _add_tray(spec, tabletop, carrier_body(name), pose)
+    return spec.compile()
+
+
+@cache
+def _robot_document() -> str:
+    """The URDF with what MuJoCo is told about reading it."""
+    robot = ET.fromstring(panda_text())
+    options = {"strippath": "false", "fusestatic": "false", "discardvisual": "true"}
+    ET.SubElement(ET.SubElement(robot, "mujoco"), "compiler", options)
+    return ET.tostring(robot, encoding="unicode")
+
+
+def _set_options(spec: Any) -> None:
+    option = spec.option
+    option.timestep = TIME_STEP
+    option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+    option.impratio = IMPEDANCE_RATIO
+    # Piles at rest are left out until something touches them.
+    option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+
+
+def _dress_robot(spec: Any, friction: Friction) -> None:
+    """Give the robot its surfaces and motors; its weight is carried, as a real arm's controller does."""
+    for body in spec.bodies:
+        if body.name == "world":
+            continue
+        body.gravcomp = 1.0
+        coefficient = friction.finger if body.name in FINGER_SIDES else LINK_FRICTION
+        for shape in body.geoms:
+            _surface(shape, friction.block * coefficient, 1, ROBOT, BLOCKS | TRAYS)
+            shape.name = body.name
+            # Inertias follow from the shapes, as in PyBullet: those of the file are the same for all links.
+            shape.mass = body.mass
+    for joint in spec.joints:
+        if joint.name in FINGER_JOINTS:
+            # What the URDF calls effort would clamp the fingers' force below that of their motors.
+            joint.actfrcrange = [-FINGER_FORCE, FINGER_FORCE]
+    for name, stiffness, force in zip(ARM_JOINTS, STIFFNESS, ARM_FORCE, strict=True):
+        _add_motor(spec, name, stiffness, DAMPING_SHARE * stiffness, force)
+    for name in FINGER_JOINTS:
+        _add_motor(spec, name, FINGER_STIFFNESS, FINGER_DAMPING, FINGER_FORCE)
+    # The fingers move as one: apart, they drift sideways together with the block that they squeeze.
+    for tie in spec.equalities:
+        tie.solref = CONTACT
+        tie.solimp = IMPEDANCE
+
+
+def _add_motor(spec: Any, joint: str, stiffness: float, damping: float, force: float) -> None:
+    motor = spec.add_actuator(name=joint, target=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT)
+    motor.set_to_position(kp=stiffness, kv=damping)
+    motor.forcerange = [-force, force]
+    motor.forcelimited = True
+
+
+def _free_body(spec: Any, name: str, pose: BlockPose) -> Any:
+    x, y, z, w = quaternion_of(pose.rotation)
+    body = spec.worldbody.add_body(name=name, pos=pose.position, quat=[w, x, y, z])
+    body.add_freejoint()
+    return body
+
+
+def _add_tray(spec: Any, tabletop: Tabletop, name: str, pose: BlockPose) -> None:
+    """One body of several boxes, its centre of mass in its frame's origin, the middle of the board."""
+    tray = tabletop.tray
+    assert tray is not None
+    body = _free_body(spec, name, pose)
+    centres, half = tray.boxes
+    for number, (centre, size) in enumerate(zip(centres, half, strict=True)):
+        part = f"{name} {number}"
+        box = body.add_geom(name=part, type=mujoco.mjtGeom.mjGEOM_BOX, pos=centre, size=size)
+        _surface(box, tray.friction * tabletop.friction.block, 1, TRAYS, BLOCKS | ROBOT | GROUND)
+        for other, friction in (
+            ("table", tabletop.friction.table),
+            *((f, tabletop.friction.finger) for f in FINGER_SIDES),
+        ):
+            _pair(spec, part, other, tray.friction * friction)
+    body.explicitinertial = True
+    body.mass = tray.mass
+    body.ipos = np.zeros(3)
+    body.inertia = _box_inertia(tray.mass, np.abs(centres).max(axis=0) + half.max(axis=0))
+
+
+def _pair_blocks(spec: Any, friction: Friction, made: Mapping[str, Made]) -> None:
+    """Give blocks of unlike friction the products of theirs, with each other, the table, the fingers."""
+    grounds = {"table": friction.table, **dict.fromkeys(FINGER_SIDES, friction.finger)}
+    for name, block in made.items():
+        for ground, coefficient in grounds.items():
+            _pair(spec, block_body(name), ground, block.friction * coefficient)
+    for (name, block), (other, second) in combinations(made.items(), 2):
+        _pair(spec, block_body(name), block_body(other), block.friction * second.friction)
+
+
+def _pair(spec: Any, first: str, second: str, friction: float) -> None:
+    pair = spec.add_pair(geomname1=first, geomname2=second)
+    pair.friction = [friction, friction, TORSION, ROLLING, ROLLING]
+    pair.condim = 4
+    pair.solref = CONTACT
+    pair.solimp = IMPEDANCE
+
+
+def _box_inertia(mass: float, half: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Principal moments of a box [kg m2], shape (3,)."""
+    square = half**2
+    return np.asarray(mass / 3 * (square.sum() - square))
+
+
+def _surface(shape: Any, friction: float, priority: int, kind: int, meets: int) -> None:
+    shape.friction = [friction, TORSION, ROLLING]
+    shape.priority = priority
+    shape.contype, shape.conaffinity = kind, meets
+    shape.condim = 4
+    shape.solref = CONTACT
+    shape.solimp = IMPEDANCE

@@ -1,0 +1,130 @@
+"""MuJoCo: the world in a model and data of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from smash.execution.physics import mujoco_model as models
+from smash.execution.physics.world import FINGER_SPEED, STEP, World
+from smash.execution.scene.block_pose import BlockPose
+from smash.motion.robot import ARM_JOINTS
+from smash.problem.errors import Unsupported
+
+STEPS = round(STEP / models.TIME_STEP)
+"""Steps of the simulation in one of ours."""
+
+
+class MujocoWorld(World):
+    """Panda, table and blocks in one MuJoCo model."""
+
+    engine = "mujoco"
+    model: Any
+    data: Any
+
+    def _open(self, blocks: Mapping[str, BlockPose], carriers: Mapping[str, BlockPose], gui: bool) -> None:
+        if gui:
+            raise Unsupported("there is no window with the engine mujoco; the engine pybullet has one")
+        made = {name: self._as_made(name) for name in blocks}
+        self.model = model = models.build(self.tabletop, blocks, carriers, made)
+        self.data = mujoco.MjData(model)
+        # What is looked at is worked out in data of its own: looking changes nothing.
+        self._seen = mujoco.MjData(model)
+        self._arm = np.array([model.joint(name).qposadr[0] for name in ARM_JOINTS])
+        self._fingers = np.array([model.joint(name).qposadr[0] for name in models.FINGER_JOINTS])
+        self._motors = np.array([model.actuator(name).id for name in ARM_JOINTS])
+        self._finger_motors = np.array([model.actuator(name).id for name in models.FINGER_JOINTS])
+        # A motor's damping pulls against the speed that is wanted too: that much is added to where it is sent.
+        self._lead = models.DAMPING_SHARE
+        self._blocks = {name: model.body(models.block_body(name)).id for name in blocks}
+        self._carriers = {name: model.body(models.carrier_body(name)).id for name in carriers}
+        self._links = np.array([model.body(name).id for name in models.LINKS])
+        self._tool: int = model.body(models.TOOL).id
+        self._free = [int(model.body_dofadr[body]) for body in (*self._blocks.values(), *self._carriers.values())]
+        self._block_of = np.full(model.ngeom, -1)
+        self._block_of[[model.geom(models.block_body(name)).id for name in blocks]] = np.arange(len(blocks))
+        self._of_robot = model.geom_contype == models.ROBOT
+        self._names = list(blocks)
+        self.data.qpos[self._arm] = self._target
+        self.data.qpos[self._fingers] = self._finger_target = self.opening
+        self._send_fingers()
+        self._hold()
+        mujoco.mj_forward(model, self.data)
+
+    def close(self) -> None:
+        """Give nothing back: what is held goes with the object."""
+
+    def _advance(self) -> None:
+        step = FINGER_SPEED * STEP
+        self._finger_target += min(step, max(-step, self.opening - self._finger_target))
+        self.data.ctrl[self._finger_motors] = self._finger_target
+        mujoco.mj_step(self.model, self.data, STEPS)
+
+    def _send(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> None:
+        self.data.ctrl[self._motors] = position + self._lead * velocity
+
+    def _send_fingers(self) -> None:
+        """Nothing to do: each step takes the fingers' motors on towards `opening`."""
+
+    def _in_contact(self) -> Iterator[str]:
+        contact = self.data.contact
+        if not len(contact.dist):
+            return
+        first, second = contact.geom.T
+        touching = contact.dist <= 0.0
+        for robot, other in ((first, second), (second, first)):
+            for block in self._block_of[other[touching & self._of_robot[robot]]]:
+                if block >= 0:
+                    yield self._names[block]
+
+    def _speeds(self) -> Iterator[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+        velocity = self.data.qvel
+        for first in self._free:
+            yield velocity[first : first + 3], velocity[first + 3 : first + 6]
+
+    def _look(self) -> Any:
+        """Where everything is after the last step; what a step leaves is where it was before it."""
+        self._seen.qpos[:] = self.data.qpos
+        mujoco.mj_kinematics(self.model, self._seen)
+        return self._seen
+
+    def pose(self, block: str) -> BlockPose:
+        """Pose of a block."""
+        return self._poses([self._blocks[block]])[0]
+
+    def poses(self) -> dict[str, BlockPose]:
+        """Poses of all blocks."""
+        return dict(zip(self._blocks, self._poses(self._blocks.values()), strict=True))
+
+    def carriers(self) -> dict[str, BlockPose]:
+        """Poses of all carriers."""
+        return dict(zip(self._carriers, self._poses(self._carriers.values()), strict=True))
+
+    def _poses(self, bodies: Iterable[int]) -> list[BlockPose]:
+        seen = self._look()
+        return [BlockPose(seen.xpos[body].copy(), seen.xmat[body].reshape(3, 3).copy()) for body in bodies]
+
+    def joints(self) -> NDArray[np.float64]:
+        """Measured arm joints [rad], shape (7,)."""
+        return np.array(self.data.qpos[self._arm])
+
+    def fingers(self) -> NDArray[np.float64]:
+        """Measured place of each finger, from the middle [m], shape (2,)."""
+        return np.array(self.data.qpos[self._fingers])
+
+    def torques(self) -> NDArray[np.float64]:
+        """What the arm's motors turn with [Nm], shape (7,)."""
+        return np.array(self.data.actuator_force[self._motors])
+
+    def links(self) -> NDArray[np.float64]:
+        """Position [m] and quaternion (x, y, z, w) of links 1 to 7, hand and fingers, shape (10, 7)."""
+        seen = self._look()
+        return np.hstack([seen.xpos[self._links], np.roll(seen.xquat[self._links], -1, axis=1)])
+
+    def tool_position(self) -> NDArray[np.float64]:
+        """Measured position of the tool frame [m], shape (3,)."""
+        return np.array(self._look().xpos[self._tool])

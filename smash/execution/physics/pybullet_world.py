@@ -1,0 +1,214 @@
+"""PyBullet: the world in a connection of its own.
+
+Only a fresh connection with `deterministicOverlappingPairs` repeats an episode bit for bit.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from smash.execution.physics.simulated_robot import simulated_panda
+from smash.execution.physics.window import furnish, require_display, words_to_stderr
+from smash.execution.physics.world import ARM_FORCE, FINGER_FORCE, FINGER_SPEED, STEP, World
+from smash.execution.scene.block_pose import BlockPose, quaternion_of
+
+ITERATIONS = 50
+BASE = -1
+ARM = tuple(range(7))
+FINGERS = (9, 10)
+LINKS = (*ARM, 8, *FINGERS)
+"""Its numbers of the links that move: arm, hand, fingers."""
+TOOL_LINK = 11
+ASLEEP = 1e-5
+"""A block whose squared speed [m2/s2 + rad2/s2] stays below this for two seconds is left out of the simulation until
+something awake touches it or what it stands with: piles do not creep, and most of the work is spared."""
+
+
+class PyBulletWorld(World):
+    """Panda, table and blocks in one PyBullet connection.
+
+    A step of the simulation is a `STEP`: one twice as long lets tall stacks drift by millimetres.
+    """
+
+    engine = "pybullet"
+    client: Any = None
+    _after_close: Callable[[], None] | None = None
+
+    def _open(self, blocks: Mapping[str, BlockPose], carriers: Mapping[str, BlockPose], gui: bool) -> None:
+        if gui:
+            require_display()
+        self.client = connect(gui)
+        if gui:
+            self._after_close = words_to_stderr()
+            furnish(self.client, self.tabletop)
+        self._set_up(blocks, gui)
+        self._trays = {name: self._add_tray(pose) for name, pose in carriers.items()}
+
+    def close(self) -> None:
+        """End the connection."""
+        if self.client is not None:
+            self.client.disconnect()
+            self.client = None
+        if self._after_close is not None:
+            self._after_close()
+            self._after_close = None
+
+    def _set_up(self, blocks: Mapping[str, BlockPose], gui: bool) -> None:
+        c, friction, side = self.client, self.tabletop.friction, self.tabletop.side
+        c.setPhysicsEngineParameter(fixedTimeStep=STEP, numSolverIterations=ITERATIONS, deterministicOverlappingPairs=1)
+        c.setGravity(0, 0, -9.81)
+        shape = c.createCollisionShape(c.GEOM_BOX, halfExtents=[1.5, 1.5, 0.05])
+        self._table: int = c.createMultiBody(0, shape, -1, [0, 0, -0.05])
+        c.changeDynamics(self._table, -1, lateralFriction=friction.table)
+        c.changeVisualShape(self._table, -1, rgbaColor=[0.93, 0.91, 0.87, 1])
+        unseen = 0 if gui else c.URDF_IGNORE_VISUAL_SHAPES
+        with simulated_panda() as urdf:
+            self.robot: int = c.loadURDF(str(urdf), useFixedBase=True, flags=unseen)
+        for finger in FINGERS:
+            c.changeDynamics(self.robot, finger, lateralFriction=friction.finger)
+        for joint in ARM:
+            c.resetJointState(self.robot, joint, float(self._target[joint]))
+        for finger in FINGERS:
+            c.resetJointState(self.robot, finger, self.opening)
+        self._couple_fingers()
+        # The base is bolted to the table; its contacts would cost more than all blocks'.
+        for link in (BASE, 0):
+            c.setCollisionFilterPair(self.robot, self._table, link, -1, 0)
+        box = c.createCollisionShape(c.GEOM_BOX, halfExtents=[side / 2] * 3)
+        self.bodies: dict[str, int] = {}
+        for name, pose in blocks.items():
+            made, shape = self._as_made(name), box
+            if made.side != side:
+                shape = c.createCollisionShape(c.GEOM_BOX, halfExtents=[made.side / 2] * 3)
+            body = c.createMultiBody(made.mass, shape, -1, pose.position.tolist(), quaternion_of(pose.rotation))
+            c.changeDynamics(
+                body,
+                -1,
+                lateralFriction=made.friction,
+                activationState=c.ACTIVATION_STATE_ENABLE_SLEEPING,
+                sleepThreshold=ASLEEP,
+            )
+            self.bodies[name] = body
+        self._named = {body: name for name, body in self.bodies.items()}
+        self._advance_client = c.stepSimulation
+        self._send_arm = partial(c.setJointMotorControlArray, self.robot, ARM, c.POSITION_CONTROL, forces=ARM_FORCE)
+        self._hold()
+        self._send_fingers()
+
+    def _add_tray(self, pose: BlockPose) -> int:
+        """One body of several boxes; its frame, the middle of the board, is its centre of mass."""
+        c, tray = self.client, self.tabletop.tray
+        assert tray is not None
+        centres, half = (array.tolist() for array in tray.boxes)
+        shape = c.createCollisionShapeArray(
+            shapeTypes=[c.GEOM_BOX] * len(half), halfExtents=half, collisionFramePositions=centres
+        )
+        body: int = c.createMultiBody(tray.mass, shape, -1, pose.position.tolist(), quaternion_of(pose.rotation))
+        c.changeDynamics(body, -1, lateralFriction=tray.friction)
+        return body
+
+    def _couple_fingers(self) -> None:
+        """Let the fingers move as one: apart, they drift sideways together with the block that they squeeze."""
+        c = self.client
+        gear = c.createConstraint(
+            self.robot, FINGERS[0], self.robot, FINGERS[1], c.JOINT_GEAR, [1, 0, 0], [0, 0, 0], [0, 0, 0]
+        )
+        c.changeConstraint(gear, gearRatio=-1, erp=0.2, maxForce=200)
+
+    def _advance(self) -> None:
+        self._advance_client()
+
+    def _send(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> None:
+        self._send_arm(targetPositions=position.tolist(), targetVelocities=velocity.tolist())
+
+    def _send_fingers(self) -> None:
+        for finger in FINGERS:
+            self.client.setJointMotorControl2(
+                self.robot,
+                finger,
+                self.client.POSITION_CONTROL,
+                targetPosition=self.opening,
+                force=FINGER_FORCE,
+                maxVelocity=FINGER_SPEED,
+            )
+
+    def _in_contact(self) -> Iterator[str]:
+        for point in self.client.getContactPoints(bodyA=self.robot):
+            block = self._named.get(point[2])
+            if block is not None and point[8] <= 0.0:
+                yield block
+
+    def _speeds(self) -> Iterator[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+        for body in (*self.bodies.values(), *self._trays.values()):
+            linear, angular = self.client.getBaseVelocity(body)
+            yield np.array(linear), np.array(angular)
+
+    def pose(self, block: str) -> BlockPose:
+        """Pose of a block."""
+        return self._pose_of(self.bodies[block])
+
+    def poses(self) -> dict[str, BlockPose]:
+        """Poses of all blocks."""
+        return {name: self._pose_of(body) for name, body in self.bodies.items()}
+
+    def carriers(self) -> dict[str, BlockPose]:
+        """Poses of all carriers."""
+        return {name: self._pose_of(body) for name, body in self._trays.items()}
+
+    def _pose_of(self, body: int) -> BlockPose:
+        position, quaternion = self.client.getBasePositionAndOrientation(body)
+        rotation = np.array(self.client.getMatrixFromQuaternion(quaternion)).reshape(3, 3)
+        return BlockPose(np.array(position), rotation)
+
+    def joints(self) -> NDArray[np.float64]:
+        """Measured arm joints [rad], shape (7,)."""
+        return self._states(ARM, 0)
+
+    def fingers(self) -> NDArray[np.float64]:
+        """Measured place of each finger, from the middle [m], shape (2,)."""
+        return self._states(FINGERS, 0)
+
+    def torques(self) -> NDArray[np.float64]:
+        """What the arm's motors turn with [Nm], shape (7,)."""
+        return self._states(ARM, 3)
+
+    def _states(self, joints: Iterable[int], entry: int) -> NDArray[np.float64]:
+        return np.array([state[entry] for state in self.client.getJointStates(self.robot, joints)])
+
+    def links(self) -> NDArray[np.float64]:
+        """Position [m] and quaternion (x, y, z, w) of links 1 to 7, hand and fingers, shape (10, 7)."""
+        states = self.client.getLinkStates(self.robot, LINKS, computeForwardKinematics=True)
+        return np.array([[*state[4], *state[5]] for state in states])
+
+    def tool_position(self) -> NDArray[np.float64]:
+        """Measured position of the tool frame [m], shape (3,)."""
+        return np.array(self.client.getLinkState(self.robot, TOOL_LINK, computeForwardKinematics=True)[4])
+
+
+def connect(gui: bool) -> Any:
+    """A new PyBullet connection, without the library's greetings on the user's output."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    kept = [os.dup(1), os.dup(2)]
+    silence = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(silence, 1)
+        os.dup2(silence, 2)
+        import pybullet
+        from pybullet_utils.bullet_client import BulletClient
+
+        return BulletClient(connection_mode=pybullet.GUI if gui else pybullet.DIRECT)
+    finally:
+        ctypes.CDLL(None).fflush(None)
+        for number, copy in enumerate(kept, start=1):
+            os.dup2(copy, number)
+            os.close(copy)
+        os.close(silence)
