@@ -7,7 +7,7 @@ SCENES := friction-0.10 friction-0.30 friction-0.40 friction-0.50
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help install install-all clean test test-slow test-timing lint ci suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full friction robustness robustness-full paces paces-full topple-map scoop reproduce reproduce-full results physics
+.PHONY: help install install-all clean test test-slow test-timing lint ci suites ablation ablation-full bench scaling proofs compare compare-full best-known tables tables-full friction robustness robustness-full paces paces-full topple-map scoop reproduce reproduce-full results physics
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -121,6 +121,9 @@ topple-map: needs-analysis-execution physics ## where toppled blocks land, per c
 
 bench: needs-gurobi ## first plans, proofs, HiGHS against Gurobi, hundreds of blocks: the README's tables (3 minutes)
 	$(BIN)/python -m smash.experiments.studies.benchmark
+
+proofs: needs-analysis ## the 3,120 problems of the committed sets (13 buffer counts, with and without topple), each proven (a minute)
+	for set in single-4 single-6 single-9 multi-4 multi-6 multi-9; do $(BIN)/smash frontier $$set --out runs/proofs/$$set || exit; done
 
 scaling: needs-analysis ## time over 4 to 1,000 blocks, per planner: curves and exponents (hours; it can be resumed)
 	$(BIN)/smash scaling --out runs/scaling

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).parents[2]
 DATA = "Data SHA-256"
 """The PNG's text field that holds the hash of what it shows."""
-PAGES = ("README.md", "docs/pddl.md", "docs/layered.md")
+PAGES = ("README.md", "docs/results.md", "docs/pddl.md", "docs/layered.md")
 BLOCK = re.compile(r"(<!-- ([a-z][\w./-]+\.md) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 
 Drawing = tuple[str, Callable[[], "Figure"]]
