@@ -18,6 +18,8 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "scip": ("pyscipopt",),
     "clingo": ("clingo",),
     "didp": ("didppy",),
+    "docs": ("mkdocs", "material", "mkdocstrings"),
+    "gym": ("gymnasium",),
 }
 """Extra -> the modules that come with it."""
 
