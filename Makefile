@@ -7,7 +7,7 @@ SCENES := friction-0.10 friction-0.30 friction-0.40 friction-0.50
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help install install-all clean test test-slow test-timing lint ci suites ablation ablation-full bench scaling proofs compare compare-full best-known tables tables-full friction robustness robustness-full paces paces-full topple-map scoop reproduce reproduce-full results physics
+.PHONY: help install install-all docs clean test test-slow test-timing lint ci suites ablation ablation-full bench scaling proofs compare compare-full best-known tables tables-full friction robustness robustness-full paces paces-full topple-map scoop reproduce reproduce-full results physics
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -25,8 +25,12 @@ install-all: needs-all-dev ## set up .venv with all that its Python can have, an
 	@$(BIN)/python -c 'import pybullet' 2>/dev/null || echo 'smash: execution is left out: PyBullet has no wheels for this Python (3.11 has them)'
 	@echo 'smash: ready. $(BIN)/smash plan examples/figure1.json (or first: source $(BIN)/activate)'
 
+docs: needs-analysis-docs ## build the documentation as a site that is read offline: site/index.html (half a minute)
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
+	@echo 'smash: open site/index.html'
+
 clean: ## remove what was set up, compiled and built; runs/ stays
-	rm -rf $(VENV) .venvs build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) .venvs build dist site .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 test: needs-all-dev ## run the tests (minutes); slow ones with `make test-slow`

@@ -52,7 +52,7 @@ def _pictures(cells: pd.DataFrame, matched: pd.DataFrame, out: Path) -> list[Pat
 
 def main() -> None:
     """Make the ablation's pictures and say where they are."""
-    command.run("ablation", __doc__, make, "ablation", shown="findings.md")
+    command.run("ablation", __doc__, make, shown="findings.md")
 
 
 if __name__ == "__main__":

@@ -147,7 +147,7 @@ def make(results: Path, out: Path) -> list[Path]:
 
 def main() -> None:
     """Make the scaling tables and curves and say where they are."""
-    command.run("scaling", __doc__, make, "scaling", shown="scaling.md")
+    command.run("scaling", __doc__, make, shown="scaling.md")
 
 
 if __name__ == "__main__":

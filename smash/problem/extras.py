@@ -20,6 +20,8 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "clingo": ("clingo",),
     "didp": ("didppy",),
     "maxsat": ("pysat",),
+    "docs": ("mkdocs", "material", "mkdocstrings"),
+    "gym": ("gymnasium",),
 }
 """Extra -> the modules that come with it."""
 

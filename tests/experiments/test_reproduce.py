@@ -275,7 +275,7 @@ name = "ablation"
 about = "heatmaps"
 minutes = 1
 commands = ["smash sweep {here}/few.toml --out {out}/ablation", "python -m smash_analysis.ablation {out}/ablation"]
-products = ["ablation/runs.jsonl", "ablation/ablation/*"]
+products = ["ablation/runs.jsonl", "ablation/*.png"]
 [[steps]]
 name = "frontier"
 about = "frontier"
