@@ -12,11 +12,13 @@ import click
 
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.environment import commit
-from smash.experiments.sweeps.cluster import connected
+from smash.experiments.isolation.job import longest
+from smash.experiments.sweeps.cluster import WORKERS_OWN_SECONDS, connected
 from smash.experiments.sweeps.cluster import slurm_script as batch_script
 from smash.experiments.sweeps.display import Progress
 from smash.experiments.sweeps.experiment import Experiment, Run, experiment_runs, not_installed, read_experiment
 from smash.experiments.sweeps.keep import keep
+from smash.experiments.sweeps.standstill import watched
 from smash.experiments.sweeps.sweep import execute, local_task, sweep
 from smash.problem.files.documents import write_text
 from smash.problem.words import one_line
@@ -153,5 +155,9 @@ def _sweep(runs: list[Run], records: Writer[RunRecord], kept: int, jobs: int, da
         width = sum(client.nthreads().values())
         if not width:
             click.echo("no worker is there yet; the runs wait for the first", err=True)
-        with Progress(len(runs), kept, width or len(runs), pool_begins=False) as progress:
+        most = max(longest(run.job.budget) for run in runs) + WORKERS_OWN_SECONDS
+        with (
+            Progress(len(runs), kept, width or len(runs), pool_begins=False) as progress,
+            watched(client, most, partial(click.echo, err=True)),
+        ):
             sweep(runs, records, client.get_executor(pure=False), execute, progress, stop)

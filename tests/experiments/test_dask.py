@@ -8,7 +8,9 @@ import subprocess
 import sys
 import time
 from collections import Counter
+from contextlib import suppress
 
+import psutil
 import pytest
 
 from smash.records.files import RUNS
@@ -93,6 +95,23 @@ def test_two_killed_workers_lose_only_what_they_were_running(cluster, experiment
     assert tables(out) == tables(alone)
 
 
+def test_a_worker_that_stands_still_is_found_and_its_run_done_elsewhere(cluster, experiment, tmp_path):
+    scheduler, _ = cluster
+    out = tmp_path / "out"
+    running = subprocess.Popen(command(experiment, out, "--dask", scheduler), stderr=subprocess.PIPE, text=True)
+    while not (out / RUNS.name).exists() or (out / RUNS.name).read_text().count("\n") < 5:
+        time.sleep(0.05)
+    frozen = worker_processes(scheduler)[0]
+    os.kill(frozen, signal.SIGSTOP)
+    _, said = running.communicate(timeout=300)
+    assert running.returncode == 0, said
+    assert said.count("stands still (nothing heard of it for 30 s): its runs go to others") == 1
+    made = records(out)
+    assert len(made) == len({record["key"] for record in made}) == 200
+    assert 160 <= len((tmp_path / "starts").read_text().splitlines()) <= 161
+    assert not psutil.pid_exists(frozen)
+
+
 def test_a_scheduler_that_dies_loses_no_record_and_is_one_line(cluster, experiment, tmp_path):
     scheduler, process = cluster
     out = tmp_path / "out"
@@ -121,6 +140,23 @@ def test_the_batch_script_runs_the_sweep_where_slurm_is_a_stand_in(experiment, t
     stand_in.write_text('#!/bin/bash\nwhile [[ $1 == -* ]]; do shift; done\n"$@" &\n"$@" &\nwait\n')
     stand_in.chmod(0o755)
     path = {**os.environ, "PATH": f"{stand_in.parent}:{os.environ['PATH']}"}
-    ended = subprocess.run(["bash", script], env=path, capture_output=True, text=True, timeout=100)
-    assert ended.returncode == 0, ended.stderr
+    running = subprocess.Popen(["bash", script], env=path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    while not (address := scheduler_address(out)):
+        time.sleep(0.05)
+        assert running.poll() is None, running.stderr.read()
+    assert address.startswith("tls://")
+    stranger = command(experiment, tmp_path / "stranger", "--dask", address)
+    refused = subprocess.run(stranger, capture_output=True, text=True, timeout=100)
+    assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
+    _, said = running.communicate(timeout=100)
+    assert running.returncode == 0, said
     assert len(records(out)) == 8
+    assert not [file.name for file in out.iterdir() if file.name.startswith(("tls-", "scheduler-"))]
+
+
+def scheduler_address(out):
+    """Return what the file of a scheduler says, once it is there and whole."""
+    for file in out.glob("scheduler-*.json"):
+        with suppress(ValueError, OSError):
+            return json.loads(file.read_text())["address"]
+    return ""

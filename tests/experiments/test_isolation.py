@@ -14,6 +14,8 @@ import pytest
 
 from smash.experiments.isolation.caller import run_isolated, when
 from smash.experiments.isolation.job import Job
+from smash.experiments.isolation.shared_memory import PLACE, segments
+from smash.experiments.isolation.starting import SHARED
 from smash.planners.protocol import Settings
 from smash.problem import PlanOptions
 from smash.problem.errors import SmashError
@@ -65,12 +67,13 @@ def marked(mark):
 
 @pytest.fixture
 def alive(monkeypatch, tmp_path):
-    """Count this test's processes that are still alive, ourselves apart (the mark is inherited)."""
+    """Count processes below this one, or with the mark of this test, that are still alive; the fork server apart."""
     mark = tmp_path.name + str(time.time())
     monkeypatch.setenv("MARKED", mark)
 
     def count():
-        return [p for p in marked(mark) if p.pid != os.getpid() and runs(p)]
+        found = {*marked(mark), *psutil.Process().children(recursive=True)}
+        return [p for p in found if p.pid not in (os.getpid(), SHARED._process) and runs(p)]
 
     return count
 
@@ -233,6 +236,28 @@ def test_memory_is_watched_over_the_whole_tree(run, planner, alive):
     assert not alive()
 
 
+def shared_memory():
+    named = {name for name in os.listdir(PLACE) if name.startswith(("psm_", "smash-run-"))}
+    return {*named, *segments()}
+
+
+@pytest.mark.parametrize(
+    "planner", ["eats-shared-memory", "writes-to-shared-memory", "eats-memory-files", "eats-segments"]
+)
+def test_shared_memory_counts_and_is_cleared_away(run, planner, alive):
+    before = shared_memory()
+    report = run(planner, memory=200)
+    assert (report.outcome, report.reason.endswith("MiB used, the limit is 200")) == ("memory", True)
+    assert shared_memory() <= before
+    assert not alive()
+
+
+def test_a_planner_may_use_shared_memory_within_its_limit_and_leaves_none(run):
+    before = shared_memory()
+    assert run("leaves-shared-memory").outcome == "feasible"
+    assert shared_memory() <= before
+
+
 def test_children_in_sessions_of_their_own_end_with_the_run(run, alive):
     assert run("leaves-children", budget=0.5).outcome == "over-budget"
     assert not alive()
@@ -279,7 +304,8 @@ def test_nothing_survives_a_guardian_killed_with_sigkill(alive, tower_file):
         stderr=subprocess.PIPE,
     )
     assert wait_until(lambda: said_all(alive()))
-    psutil.Process(caller.pid).children()[0].kill()
+    (server,) = psutil.Process(caller.pid).children()
+    server.children()[0].kill()
     assert caller.wait(100) == 7
     assert not alive()
 

@@ -1,4 +1,4 @@
-"""How a guardian is started: in a fresh interpreter, or forked where the caller is there for one run alone."""
+"""How a guardian is started: by one fork server, a copy of the caller where that is there for one run alone."""
 
 import subprocess
 import sys
@@ -8,16 +8,23 @@ import pytest
 
 FIGURE_1 = Path(__file__).parents[2] / "examples" / "figure1.json"
 BEGIN = f"""
-import subprocess, sys, threading, time
+import os, subprocess, sys, threading, time
+import psutil
 import smash
+from smash.experiments.isolation import starting
 from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import Job
 from smash.experiments.isolation.starting import guardian_of
 from smash.planners.protocol import Settings
 from smash.problem.problem import Problem
 
-def job(**limits):
-    return Job("greedy", Problem(smash.read_instance({str(FIGURE_1)!r})), Settings(), 5.0, **limits)
+def job(planner="greedy", **limits):
+    return Job(planner, Problem(smash.read_instance({str(FIGURE_1)!r})), Settings(), 5.0, **limits)
+"""
+WHERE = """import os, sys
+class Where:
+    def solve(self, instance, options, budget, on_incumbent=None):
+        raise ValueError(f"{os.getcwd()} {os.environ['NEW']} {sys.path[0]}")
 """
 
 
@@ -28,19 +35,65 @@ def said(program):
     return ended.stdout.split()
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="forks on Linux alone")
-def test_a_process_there_for_one_run_forks_unless_it_has_a_second_thread():
+@pytest.mark.skipif(sys.platform != "linux", reason="copies itself on Linux alone")
+def test_a_process_there_for_one_run_copies_itself_unless_it_has_a_second_thread():
     assert said("""
 def kind(**how):
-    with guardian_of(job(), **how) as guardian:
-        return type(guardian).__name__
+    starting.SHARED.close()
+    with guardian_of(job(), **how):
+        return "copied" if starting.SHARED._socket is None else "fresh"
 
 print(kind(may_fork=True), kind(may_fork=False))
 ends = threading.Event()
 threading.Thread(target=ends.wait).start()
 print(kind(may_fork=True))
 ends.set()
-""") == ["_Forked", "_Fresh", "_Fresh"]
+""") == ["copied", "fresh", "fresh"]
+
+
+def test_one_server_serves_all_runs_and_has_one_thread():
+    assert said("""
+servers = set()
+for _ in range(3):
+    run_isolated(job())
+    servers.add(starting.SHARED._process)
+(server,) = servers
+print(psutil.Process(server).num_threads(), len(psutil.Process(server).children()))
+""") == ["1", "0"]
+
+
+def test_a_killed_server_costs_no_run():
+    assert said("""
+for _ in range(2):
+    print(run_isolated(job()).outcome)
+    psutil.Process(starting.SHARED._process).kill()
+    time.sleep(0.1)
+print(run_isolated(job()).outcome)
+""") == ["feasible", "feasible", "feasible"]
+
+
+def test_a_server_that_stands_still_is_replaced():
+    assert said("""
+starting._STARTING = 2.0
+run_isolated(job())
+psutil.Process(starting.SHARED._process).suspend()
+print(run_isolated(job()).outcome)
+""") == ["feasible"]
+
+
+def test_a_run_has_the_environment_the_folder_and_the_path_of_its_caller_at_that_time(tmp_path):
+    site = tmp_path / "site"
+    (site / "where-1.dist-info").mkdir(parents=True)
+    (site / "where-1.dist-info" / "METADATA").write_text("Name: where\nVersion: 1\n")
+    (site / "where-1.dist-info" / "entry_points.txt").write_text("[smash.planners]\nwhere = where:Where\n")
+    (site / "where.py").write_text(WHERE)
+    assert said(f"""
+run_isolated(job())
+os.environ["NEW"] = "word"
+os.chdir({str(tmp_path)!r})
+sys.path.insert(0, "site")
+print(run_isolated(job(planner="where")).reason)
+""") == ["ValueError:", str(tmp_path), "word", str(site), "(where.py:4)"]
 
 
 @pytest.mark.parametrize("for_this", [True, False])

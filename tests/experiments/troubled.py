@@ -7,6 +7,8 @@ import subprocess
 import sys
 import time
 from contextlib import suppress
+from multiprocessing import resource_tracker
+from multiprocessing.shared_memory import SharedMemory
 
 from smash.planners.protocol import IncumbentLog, PlanResult
 from smash.problem import Pick, Place, Topple
@@ -121,6 +123,62 @@ class EatsMemoryInAChild:
         subprocess.run([sys.executable, "-c", "import time; x = b'x' * 2**29; time.sleep(600)"], check=False)
 
 
+class EatsSharedMemory:
+    """POSIX shared memory, mapped."""
+
+    def solve(self, instance, options, budget, on_incumbent=None):
+        hoard = []
+        while True:
+            hoard.append(SharedMemory(create=True, size=2**24))
+            hoard[-1].buf[:] = bytes(2**24)
+            time.sleep(0.01)
+
+
+class WritesToSharedMemory:
+    """Files of /dev/shm that nobody has open or mapped for long."""
+
+    def solve(self, instance, options, budget, on_incumbent=None):
+        for number in range(1000):
+            with open(f"/dev/shm/{os.path.basename(os.environ['TMPDIR'])}-{number}", "wb") as file:
+                file.write(bytes(2**24))
+            time.sleep(0.01)
+
+
+class EatsMemoryFiles:
+    """Files that have no name and are not mapped."""
+
+    def solve(self, instance, options, budget, on_incumbent=None):
+        file = os.memfd_create("hoard")
+        while True:
+            os.write(file, bytes(2**24))
+            time.sleep(0.01)
+
+
+class EatsSegments:
+    """System V segments, let go of as soon as they are written: they outlive the process."""
+
+    def solve(self, instance, options, budget, on_incumbent=None):
+        libc = ctypes.CDLL(None)
+        libc.shmat.restype = ctypes.c_void_p
+        while True:
+            place = ctypes.c_void_p(libc.shmat(libc.shmget(0, 2**24, 0o1600), None, 0))
+            ctypes.memset(place, 1, 2**24)
+            libc.shmdt(place)
+            time.sleep(0.01)
+
+
+class LeavesSharedMemory:
+    """Answers, and leaves shared memory of each kind behind."""
+
+    def solve(self, instance, options, budget, on_incumbent=None):
+        kept = SharedMemory(create=True, size=2**20)
+        kept.buf[:] = bytes(2**20)
+        resource_tracker.unregister(kept._name, "shared_memory")
+        ctypes.CDLL(None).shmget(0, 2**20, 0o1600)
+        time.sleep(0.3)
+        return PlanResult("feasible", detour(instance, 0))
+
+
 class Cheats:
     def solve(self, instance, options, budget, on_incumbent=None):
         return PlanResult("optimal", (Pick("b1", "s1"), Place("b1", "s2")), 2, "wishful")
@@ -224,6 +282,11 @@ PLANNERS = {
     "leaves-children": LeavesChildren,
     "eats-memory": EatsMemory,
     "eats-memory-in-a-child": EatsMemoryInAChild,
+    "eats-shared-memory": EatsSharedMemory,
+    "writes-to-shared-memory": WritesToSharedMemory,
+    "eats-memory-files": EatsMemoryFiles,
+    "eats-segments": EatsSegments,
+    "leaves-shared-memory": LeavesSharedMemory,
     "cheats": Cheats,
     "boasts": Boasts,
     "mumbles": Mumbles,

@@ -14,7 +14,7 @@ from threading import Event
 from time import monotonic
 from typing import Any
 
-from smash.experiments.isolation.job import STARTUP_LIMIT, Job, Report, grace
+from smash.experiments.isolation.job import Job, Report, longest
 from smash.experiments.isolation.starting import Guardian, guardian_of
 from smash.planners.protocol import OnIncumbent
 from smash.problem.errors import SmashError
@@ -28,7 +28,7 @@ from smash.records.outcomes import OutcomeName
 LATENCY = 0.25
 """Seconds that a line may take on its way: a plan that is said to be older than that counts from its arrival."""
 _PATIENCE = 20.0
-"""Seconds beyond all limits after which a guardian that says nothing is given up."""
+"""Seconds that a guardian has to say how a run ended that was stopped."""
 
 
 def run_isolated(
@@ -53,7 +53,7 @@ def run_isolated(
 
 def _lines(guardian: Guardian, job: Job, stop: Event | None) -> Iterator[bytes]:
     """Yield what the guardian says until it ends; where `stop` is set, close its input and hear it out."""
-    last = monotonic() + STARTUP_LIMIT + job.budget + grace(job.budget) + _PATIENCE
+    last = monotonic() + longest(job.budget)
     unread = b""
     with selectors.DefaultSelector() as selector:
         selector.register(guardian.stdout, selectors.EVENT_READ)

@@ -1,8 +1,8 @@
 """The guardian: a small process between a run and whoever asked for it, which no planner outlives.
 
 It forks the planner's process, passes on the JSON lines that this one says, and watches three limits: wall
-time (budget and grace), memory (resident set of the whole tree; what it prints and writes to its scratch folder may
-not be more either) and start-up. It ends the whole tree (Fast
+time (budget and grace), memory (resident set of the whole tree and its shared memory; what it prints and writes to
+its scratch folder may not be more either) and start-up. It ends the whole tree (Fast
 Downward, Java, whatever was started, in sessions of their own too) when a limit is hit, when the planner
 has answered, and when its own standard input closes: that is how a caller stops it, and what the kernel
 does where the caller is killed. If the guardian itself is killed, the planner's process dies with it.
@@ -15,55 +15,65 @@ import json
 import os
 import resource
 import selectors
+import shutil
 import signal
 import sys
 import tempfile
 from contextlib import suppress
 from time import monotonic, sleep
 from types import FrameType
-from typing import TYPE_CHECKING, Any, BinaryIO, NoReturn
+from typing import Any, BinaryIO, NoReturn
+
+import psutil
 
 from smash.experiments.isolation.job import STARTUP_LIMIT, Job, grace
+from smash.experiments.isolation.leftovers import Left, end_tree, scratch_prefix
 from smash.experiments.isolation.lifetime import adopt_orphans, end_with_parent
+from smash.experiments.isolation.shared_memory import SharedMemory, mapped, set_apart
 from smash.experiments.isolation.solving import solve
 
-if TYPE_CHECKING:
-    import psutil
-
+_ENDING = 10.0
+"""Seconds that the planner's process has to be gone once it was killed."""
 SAMPLING = 0.1
 """Seconds between two looks at the tree's memory."""
 SAID_LINES = 20
-MARK = "SMASH_RUN"
-"""Environment variable that every process of a run inherits, with a value of the run's own."""
 
 
-def main() -> None:
-    """Read one job (a JSON line) from standard input, and guard it."""
-    signal.signal(signal.SIGTERM, _leave)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    guard(Job.from_document(json.loads(sys.stdin.buffer.readline())))
+def guard(job: Job, left: Left, apart: bool) -> None:
+    """Run a job, write what happens to standard output, and end it where standard input closes.
 
-
-def guard(job: Job) -> None:
-    """Run a job, write what happens to standard output, and end it where standard input closes."""
+    Args:
+        job: the run.
+        left: how its scratch folder is called, and where it lies.
+        apart: whether it may have shared memory of its own.
+    """
     signal.signal(signal.SIGTERM, _leave)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     adopt_orphans(True)
-    with tempfile.TemporaryDirectory(prefix=scratch_prefix(os.environ[MARK]), ignore_cleanup_errors=True) as scratch:
-        os.environ["TMPDIR"] = scratch
-        tempfile.tempdir = None
+    shared = SharedMemory(apart and set_apart(job.memory))
+    scratch = ""
+    try:
+        scratch = tempfile.mkdtemp(prefix=scratch_prefix(left.mark), dir=left.folder)
         with open(os.path.join(scratch, "said.txt"), "w+b") as said:
-            pipe, planner = _start(job, said)
-            watch = _Watch(job, planner, pipe, said, scratch)
-            try:
-                watch.run()
-            finally:
-                watch.end_all()
+            _guard(job, said, scratch, shared)
+    except OSError as error:
+        where = error.filename or scratch or left.folder
+        words = f"{where}: a run cannot write there: {error.strerror}"
+        _say(json.dumps({"kind": "failed", "at": 0.0, "outcome": "malformed", "reason": words}).encode())
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
 
 
-def scratch_prefix(mark: str) -> str:
-    """Return how the name of a run's scratch folder begins: whoever outlives a guardian finds it by its mark."""
-    return f"smash-run-{mark[:16]}-"
+def _guard(job: Job, said: BinaryIO, scratch: str, shared: SharedMemory) -> None:
+    os.environ["TMPDIR"] = scratch
+    tempfile.tempdir = None
+    pipe, planner = _start(job, said)
+    watch = _Watch(job, planner, pipe, said, scratch, shared)
+    try:
+        watch.run()
+    finally:
+        watch.end_all()
+        shared.clear()
 
 
 def _leave(signum: int, frame: FrameType | None) -> NoReturn:
@@ -94,8 +104,9 @@ def _start(job: Job, said: BinaryIO) -> tuple[int, int]:
 class _Watch:
     """Passes on what the planner says, and ends it at its limits."""
 
-    def __init__(self, job: Job, planner: int, pipe: int, said: BinaryIO, scratch: str) -> None:
+    def __init__(self, job: Job, planner: int, pipe: int, said: BinaryIO, scratch: str, shared: SharedMemory) -> None:
         self.job = job
+        self.shared = shared
         self.scratch = scratch
         self.planner = planner
         self.pipe = pipe
@@ -127,30 +138,25 @@ class _Watch:
                 if monotonic() >= next_look:
                     self._reap()
                     if (beyond := self._beyond_memory()) is not None:
-                        return self._ended("memory", f"{beyond}, the limit is {self.job.memory}")
+                        return self._ended("memory", beyond)
                     next_look = monotonic() + SAMPLING
                 if self.answered or self.status is not None:
                     while self._pass_on():
                         pass
                     self._reap(patience=0.5)
-                    return self._ended(*(("", "") if self.answered else self._abnormal()))
+                    return self._ended(*self._at_its_end())
                 if monotonic() >= self.deadline:
                     return self._ended(*self._late())
 
     def end_all(self) -> None:
-        """Kill every process below the guardian; orphans come back to it, so nothing escapes by forking twice."""
-        import psutil
+        """End every process below the guardian; orphans come back to it, so nothing escapes by forking twice."""
+        end_tree(psutil.Process(), collect=self._collect)
 
-        for _ in range(200):
-            below = psutil.Process().children(recursive=True)
-            for process in below:
-                _kill(process)
-            self._reap(patience=0.02)
-            try:
-                while os.waitpid(-1, os.WNOHANG)[0]:
-                    pass
-            except ChildProcessError:
-                return
+    def _collect(self, process: int) -> None:
+        if process == self.planner:
+            self._reap(patience=_ENDING)
+        else:
+            os.waitpid(process, 0)
 
     def _pass_on(self) -> bool:
         """Pass on what the planner has said since; False where there is nothing more (or an answer already)."""
@@ -178,25 +184,27 @@ class _Watch:
     def _beyond_memory(self) -> str | None:
         """Return what of the run takes more than its limit, or None."""
         if self._look_at_memory() > self.job.memory:
-            return f"{self.peak:.0f} MiB used"
-        written = _size(self.scratch)
-        return f"{written:.0f} MiB printed and written to its scratch folder" if written > self.job.memory else None
+            return f"{self.peak:.0f} MiB used, the limit is {self.job.memory}"
+        if (written := _size(self.scratch)) <= self.job.memory:
+            return None
+        return f"{written:.0f} MiB printed and written to its scratch folder, the limit is {self.job.memory}"
 
     def _look_at_memory(self) -> float:
-        """Return the resident set of the planner's tree [MiB], and keep its peak."""
-        import psutil
+        """Return what the planner's tree uses [MiB], and keep its peak.
 
-        total = 0
-        try:
-            for process in psutil.Process().children(recursive=True):
-                try:
-                    total += process.memory_info().rss
-                except psutil.Error:
-                    continue
-        except psutil.Error:
-            return 0.0
-        self.peak = max(self.peak, total / 2**20)
-        return total / 2**20
+        That is the resident sets of its processes, and what of its shared memory is in none of them.
+        """
+        total, tree = 0, []
+        for process in _tree():
+            with suppress(psutil.Error):
+                total += process.memory_info().rss
+                tree.append(process.pid)
+        used = total / 2**20
+        held = self.shared.held(tree)
+        if held:
+            used += max(0.0, held - mapped(tree))
+        self.peak = max(self.peak, used)
+        return used
 
     def _reap(self, patience: float = 0.0) -> None:
         """Collect the planner's process if it has ended, waiting for it up to `patience` seconds."""
@@ -221,6 +229,13 @@ class _Watch:
             return "crashed", f"not ready to plan after {STARTUP_LIMIT:.0f} s"
         allowed = self.job.budget + grace(self.job.budget)
         return "over-budget", f"still running after {allowed:.1f} s on a budget of {self.job.budget:g} s: stopped"
+
+    def _at_its_end(self) -> tuple[str, str]:
+        """Return how a run ended that has answered or whose process is gone: what it left is looked at once more."""
+        beyond = self._beyond_memory()
+        if beyond is not None:
+            return "memory", beyond
+        return ("", "") if self.answered else self._abnormal()
 
     def _abnormal(self) -> tuple[str, str]:
         code = os.waitstatus_to_exitcode(self.status or 0)
@@ -256,13 +271,11 @@ def _size(folder: str) -> float:
     return total / 2**20
 
 
-def _kill(process: psutil.Process) -> None:
-    import psutil
-
+def _tree() -> list[psutil.Process]:
     try:
-        process.kill()
+        return psutil.Process().children(recursive=True)
     except psutil.Error:
-        return
+        return []
 
 
 def _say(line: bytes) -> None:

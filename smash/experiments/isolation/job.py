@@ -19,10 +19,18 @@ DEFAULT_MEMORY = 4096
 STARTUP_LIMIT = 120.0
 """Seconds that a planner has for its import and `prepare` (compiling included), before its clock starts."""
 
+_PATIENCE = 20.0
+"""Seconds beyond all limits after which whoever guards a run, and says nothing, is given up."""
+
 
 def grace(budget: float) -> float:
     """Return how long a planner may run beyond its budget before it is stopped [s]."""
     return max(0.05 * budget, 0.5)
+
+
+def longest(budget: float) -> float:
+    """Return how long a run can take at most, start and end included, before something has gone wrong [s]."""
+    return STARTUP_LIMIT + budget + grace(budget) + _PATIENCE
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,38 +1,43 @@
-"""How a guardian is started: in a fresh interpreter, or forked where the caller is there for this run alone.
+"""How a guardian is started: the fork server of this process is asked for one.
 
-Forking copies the one thread that forks and whatever locks others hold, and the memory of the caller counts as the
-run's; so only a process of one thread that has loaded nothing but this package, and has started nothing else, does it.
-It spares a small plan at the command line a second interpreter and all its imports.
+The server is an interpreter of its own, started when it is first needed and kept for all runs of this process. Only
+where this process is there for a single run, has one thread and has loaded nothing but this package, the server is a
+copy of it: that spares a small plan at the command line a second interpreter and all its imports.
 """
 
 from __future__ import annotations
 
+import atexit
 import json
 import os
-import shutil
+import selectors
 import signal
+import socket
 import subprocess
 import sys
-import tempfile
 import threading
-from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
+from dataclasses import asdict
 from pathlib import Path
 from time import monotonic, sleep
-from typing import IO, NoReturn
+from typing import IO
 
-from smash.experiments.isolation.guardian import MARK, guard, scratch_prefix
 from smash.experiments.isolation.job import Job
-from smash.experiments.isolation.lifetime import adopting_orphans
+from smash.experiments.isolation.leftovers import Left, clear_away
+from smash.experiments.isolation.server import keep_only, request_line, search_path, serve
+from smash.problem.errors import SmashError
 
-_POLLING = 0.002
-"""Seconds between two looks whether a forked guardian has ended."""
 _ENDING = 10.0
-"""Seconds that a guardian has to end once its input is closed."""
+"""Seconds that a guardian, or a server, has to end once its input is closed."""
+_STARTING = 60.0
+"""Seconds that a server has to fork a guardian; a new one imports the package first."""
+_ATTEMPTS = 3
+_POLLING = 0.002
+"""Seconds between two looks whether a server has ended."""
 
 
-class Guardian(ABC):
+class Guardian:
     """A guardian at work.
 
     Attributes:
@@ -40,16 +45,31 @@ class Guardian(ABC):
         stdout: the lines that it says.
     """
 
-    stdin: IO[bytes]
-    stdout: IO[bytes]
+    def __init__(self, stdin: int, stdout: int, status: int, pid: int) -> None:
+        self.stdin: IO[bytes] = os.fdopen(stdin, "wb")
+        self.stdout: IO[bytes] = os.fdopen(stdout, "rb", 0)
+        self._status = status
+        self._pid = pid
 
-    @abstractmethod
-    def wait(self, seconds: float) -> int | None:
-        """Return its exit code, or None where it has not ended after so many seconds."""
+    def wait(self, seconds: float) -> bool | None:
+        """Return whether it ended well and left nothing, or None where it has not ended after so many seconds.
 
-    @abstractmethod
+        Where the server was killed meanwhile nobody knows: False.
+        """
+        line = _line(self._status, seconds)
+        return None if line is None else line == b"0"
+
     def kill(self) -> None:
         """End it."""
+        with suppress(ProcessLookupError):
+            os.kill(self._pid, signal.SIGKILL)
+
+    def close(self) -> None:
+        """Close its files."""
+        with suppress(BrokenPipeError):
+            self.stdin.close()
+        self.stdout.close()
+        os.close(self._status)
 
 
 @contextmanager
@@ -59,115 +79,162 @@ def guardian_of(job: Job, *, may_fork: bool) -> Iterator[Guardian]:
     Args:
         job: what it guards.
         may_fork: whether this process is there for this run alone.
+
+    Raises:
+        SmashError: where no process can be started.
     """
-    mark = os.urandom(16).hex()
-    if not may_fork or not _has_one_thread():
-        with _ending(_Fresh(job, mark), mark) as guardian:
+    if may_fork and _has_one_thread():
+        with closing(ForkServer(copied=True)) as server, _ending(server, job) as guardian:
             yield guardian
         return
-    with adopting_orphans(), _ending(_Forked(job, mark), mark) as guardian:
+    with _ending(SHARED, job) as guardian:
         yield guardian
 
 
 @contextmanager
-def _ending(guardian: Guardian, mark: str) -> Iterator[Guardian]:
+def _ending(server: ForkServer, job: Job) -> Iterator[Guardian]:
+    left = Left.by(os.urandom(16).hex())
+    guardian = server.guardian(job, left)
     try:
         yield guardian
     finally:
         with suppress(BrokenPipeError):
             guardian.stdin.close()
-        code = guardian.wait(_ENDING)
-        if code is None:
+        well = guardian.wait(_ENDING)
+        if well is None:
             guardian.kill()
-            guardian.wait(_ENDING)
-        guardian.stdout.close()
-        if code != 0:
-            _end_marked(mark)
+            well = guardian.wait(_ENDING)
+        guardian.close()
+        if not well:
+            clear_away(left)
 
 
-class _Fresh(Guardian):
-    """A guardian in an interpreter of its own, which is told its job on its input."""
+class ForkServer:
+    """The server of this process: started when it is first asked, and again where it was killed.
 
-    def __init__(self, job: Job, mark: str) -> None:
-        here = "import sys; sys.path[:] = {!r}; from smash.experiments.isolation.guardian import main; main()"
-        self._process = subprocess.Popen(
-            [sys.executable, "-P", "-c", here.format([os.path.abspath(entry) for entry in sys.path])],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            env={**os.environ, MARK: mark},
-            start_new_session=True,
-        )
-        assert self._process.stdin is not None
-        assert self._process.stdout is not None
-        self.stdin, self.stdout = self._process.stdin, self._process.stdout
-        with suppress(BrokenPipeError):
-            self.stdin.write(json.dumps(job.document()).encode() + b"\n")
-            self.stdin.flush()
+    Args:
+        copied: whether it is a copy of this process, which has one thread, in place of an interpreter of its own.
+    """
 
-    def wait(self, seconds: float) -> int | None:
-        """Return its exit code, or None where it has not ended after so many seconds."""
+    def __init__(self, copied: bool = False) -> None:
+        self._copied = copied
+        self._lock = threading.Lock()
+        self._socket: socket.socket | None = None
+        self._process = 0
+        self._owner = 0
+
+    def guardian(self, job: Job, left: Left) -> Guardian:
+        """Have a guardian forked and tell it its job.
+
+        Raises:
+            SmashError: where that does not work out.
+        """
+        for _ in range(_ATTEMPTS):
+            with self._lock:
+                guardian = self._asked(left)
+                if guardian is None:
+                    self._drop(patience=0.0)
+                    continue
+            with suppress(BrokenPipeError):
+                guardian.stdin.write(request_line(job, left.mark))
+                guardian.stdin.flush()
+            return guardian
+        raise SmashError("no process can be started for a run: the process that starts them ends at once")
+
+    def close(self) -> None:
+        """Have it end, which it does once its guardians have, and wait for that."""
+        with self._lock:
+            if self._owner == os.getpid():
+                self._drop(_ENDING)
+
+    def _asked(self, left: Left) -> Guardian | None:
+        """Return a guardian that waits for its job; None where the server is gone or stands still."""
+        server = self._running()
+        (asked, stdin), (stdout, told), (status, telling) = os.pipe(), os.pipe(), os.pipe()
         try:
-            return self._process.wait(timeout=seconds)
-        except subprocess.TimeoutExpired:
-            return None
+            socket.send_fds(server, [json.dumps(asdict(left)).encode()], [asked, told, telling])
+            sent = True
+        except OSError:
+            sent = False
+        for number in (asked, told, telling):
+            os.close(number)
+        words = _line(status, _STARTING) if sent else None
+        if words:
+            return Guardian(stdin, stdout, status, int(words))
+        for number in (stdin, stdout, status):
+            os.close(number)
+        return None
 
-    def kill(self) -> None:
-        """End it."""
-        self._process.kill()
+    def _running(self) -> socket.socket:
+        if self._socket is None or self._owner != os.getpid():
+            self._socket, its = socket.socketpair()
+            self._owner = os.getpid()
+            self._process = _copy(its) if self._copied else _fresh(its)
+            its.close()
+        return self._socket
 
-
-class _Forked(Guardian):
-    """A guardian that is a copy of this process."""
-
-    def __init__(self, job: Job, mark: str) -> None:
-        signal.signal(signal.SIGCHLD, signal.SIG_DFL)  # ignored, as some leave it, nothing is waited for
-        sys.stdout.flush()
-        sys.stderr.flush()
-        asking, telling = os.pipe(), os.pipe()
-        self._process = os.fork()
-        if not self._process:
-            _be_guardian(job, mark, asking[0], telling[1])
-        os.close(asking[0])
-        os.close(telling[1])
-        self.stdin, self.stdout = os.fdopen(asking[1], "wb", 0), os.fdopen(telling[0], "rb", 0)
-
-    def wait(self, seconds: float) -> int | None:
-        """Return its exit code, or None where it has not ended after so many seconds."""
-        until = monotonic() + seconds
-        while True:
-            done, status = os.waitpid(self._process, os.WNOHANG)
-            if done:
-                return os.waitstatus_to_exitcode(status)
-            if monotonic() >= until:
-                return None
-            sleep(_POLLING)
-
-    def kill(self) -> None:
-        """End it."""
-        os.kill(self._process, signal.SIGKILL)
+    def _drop(self, patience: float) -> None:
+        """Close the socket and collect the process, which is killed where it has not ended after `patience` seconds."""
+        if self._socket is None:
+            return
+        self._socket.close()
+        self._socket = None
+        until = monotonic() + patience
+        with suppress(ChildProcessError):
+            while not os.waitpid(self._process, os.WNOHANG)[0]:
+                if monotonic() >= until:
+                    os.kill(self._process, signal.SIGKILL)
+                sleep(_POLLING)
 
 
-def _be_guardian(job: Job, mark: str, asked: int, told: int) -> NoReturn:
-    """In the copy: keep nothing of the caller's but its memory, guard the job, and end."""
-    code = 1
-    try:
-        os.setsid()
-        os.environ[MARK] = mark
-        nothing = os.open(os.devnull, os.O_RDWR)
-        for source, target in ((asked, 0), (told, 1), (nothing, 2)):
-            os.dup2(source, target)
-        for number in [int(name) for name in os.listdir("/proc/self/fd")]:
-            if number > 2:
-                with suppress(OSError):
-                    os.close(number)
-        sys.stdin, sys.stdout, sys.stderr = open(0), open(1, "w"), open(2, "w")  # noqa: SIM115 - until the end
-        guard(job)
-        code = 0
-    except SystemExit as ended:
-        code = ended.code if isinstance(ended.code, int) else 1
-    finally:
-        os._exit(code)
+SHARED = ForkServer()
+"""The server of all runs of this process."""
+atexit.register(SHARED.close)
+
+
+def _fresh(connection: socket.socket) -> int:
+    """Start a server in an interpreter of its own; return its process id."""
+    begin = "import sys; sys.path[:] = {!r}; from smash.experiments.isolation.server import main; main({})"
+    program = begin.format(search_path(), connection.fileno())
+    process = subprocess.Popen(
+        [sys.executable, "-P", "-c", program],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        pass_fds=[connection.fileno()],
+        start_new_session=True,
+    )
+    process.returncode = 0  # collected by `ForkServer`, not by the object that goes here
+    return process.pid
+
+
+def _copy(connection: socket.socket) -> int:
+    """Copy this process as a server; return its process id."""
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)  # ignored, as some leave it, nothing is waited for
+    sys.stdout.flush()
+    sys.stderr.flush()
+    process = os.fork()
+    if not process:
+        try:
+            os.setsid()
+            keep_only(os.open(os.devnull, os.O_RDONLY), os.open(os.devnull, os.O_WRONLY), connection.fileno())
+            serve(socket.socket(fileno=3))
+        finally:
+            os._exit(0)
+    return process
+
+
+def _line(pipe: int, seconds: float) -> bytes | None:
+    """Return the next line of a pipe, empty at its end, or None where there is none after so many seconds."""
+    until, line = monotonic() + seconds, b""
+    with selectors.DefaultSelector() as selector:
+        selector.register(pipe, selectors.EVENT_READ)
+        while selector.select(max(0.0, until - monotonic())):
+            byte = os.read(pipe, 1)
+            if byte in (b"", b"\n"):
+                return line if byte else b""
+            line += byte
+    return None
 
 
 def _has_one_thread() -> bool:
@@ -178,15 +245,3 @@ def _has_one_thread() -> bool:
         return len(list(Path("/proc/self/task").iterdir())) == 1
     except OSError:
         return False
-
-
-def _end_marked(mark: str) -> None:
-    """End what a killed guardian has left behind, found by the mark in its environment, and its scratch folder."""
-    import psutil
-
-    for process in psutil.process_iter():
-        with suppress(psutil.Error, OSError):
-            if process.environ().get(MARK) == mark:
-                process.kill()
-    for folder in Path(tempfile.gettempdir()).glob(f"{scratch_prefix(mark)}*"):
-        shutil.rmtree(folder, ignore_errors=True)

@@ -1,8 +1,8 @@
 """`python -m smash.experiments.studies.benchmark`: first plans, proofs and solvers, side by side.
 
 Prints the Markdown tables of the README's results: `layered` (first incumbent and proof on the committed sets),
-`solvers` (HiGHS against Gurobi on the same arrays), `large` (proofs at hundreds of blocks). With `--out DIR` each is
-written to DIR/NAME.md too.
+`solvers` (HiGHS against Gurobi on the same arrays), `large` (proofs at hundreds of blocks), `overhead` (what a run
+costs beside its planner). With `--out DIR` each is written to DIR/NAME.md too.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from time import perf_counter
 
+from smash.experiments.studies.overhead import overhead_rows
 from smash.planners.protocol import Settings, ask
 from smash.planners.registry import get_planner
 from smash.problem.errors import SmashError
@@ -102,7 +103,7 @@ def large_rows() -> Iterator[str]:
                 yield f"| {shape} | {result.status} | {result.cost} | {result.lower_bound} | {seconds:.2f} |"
 
 
-TABLES = {"layered": layered_rows, "solvers": solver_rows, "large": large_rows}
+TABLES = {"layered": layered_rows, "solvers": solver_rows, "large": large_rows, "overhead": overhead_rows}
 
 
 def main() -> None:

@@ -15,9 +15,12 @@ from smash.experiments.isolation.job import grace
 from smash.experiments.sweeps.experiment import Run
 from smash.problem.errors import SmashError
 from smash.problem.extras import require
+from smash.problem.words import one_line
 
 WORKERS_OWN_MEMORY = 1024
 """What a worker needs beside the run that it supervises [MiB]."""
+WORKERS_OWN_SECONDS = 60.0
+"""What a worker may take beside a run: loading the package, judging plans, clearing away."""
 SECONDS_TO_START = 3.0
 """Of a run: the interpreter, imports, what a planner compiles."""
 
@@ -38,8 +41,8 @@ def connected(where: str) -> Iterator[Any]:
     place = {"scheduler_file": where} if Path(where).is_file() else {"address": where}
     try:
         client = Client(**place, timeout=15)
-    except (OSError, ValueError) as error:
-        raise SmashError(f"--dask {where}: no scheduler answers there ({error})") from None
+    except (OSError, ValueError, TypeError, RuntimeError) as error:  # the last two: certificates are wanted, or not
+        raise SmashError(one_line(f"--dask {where}: no scheduler answers there ({error})")) from None
     try:
         yield client
     finally:
@@ -80,9 +83,19 @@ out={directory}
 mkdir -p "$out"
 scheduler="$out/scheduler-${{SLURM_JOB_ID:-here}}.json"
 rm -f "$scheduler"
-trap 'kill $(jobs -p) 2>/dev/null || true; rm -f "$scheduler"' EXIT
+# Whoever reaches a scheduler can run anything as you: only who has this job's certificate may (TLS, both ways).
+secret="$(mktemp -d "$out/tls-XXXXXX")"
+trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$scheduler" "$secret"' EXIT
+openssl req -x509 -newkey rsa:2048 -nodes -days 365 -subj /CN=smash \\
+  -keyout "$secret/key" -out "$secret/cert" 2>/dev/null
+export DASK_DISTRIBUTED__COMM__DEFAULT_SCHEME=tls DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION=true
+export DASK_DISTRIBUTED__COMM__TLS__CA_FILE="$secret/cert"
+for role in SCHEDULER WORKER CLIENT; do
+  export "DASK_DISTRIBUTED__COMM__TLS__${{role}}__CERT=$secret/cert"
+  export "DASK_DISTRIBUTED__COMM__TLS__${{role}}__KEY=$secret/key"
+done
 
-{python} -m distributed.cli.dask_scheduler --port 0 --no-dashboard --scheduler-file "$scheduler" &
+{python} -m distributed.cli.dask_scheduler --port 0 --protocol tls --no-dashboard --scheduler-file "$scheduler" &
 until [ -s "$scheduler" ]; do sleep 1; done
 # A worker that dies (its node fails, its memory is exceeded) is started anew; its run is done again elsewhere.
 srun --ntasks={workers} --kill-on-bad-exit=0 {python} -m distributed.cli.dask_worker \\
