@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from smash.problem.errors import MalformedFile
-from smash.problem.files.documents import read_bytes, write_text
+from smash.problem.files.documents import read_text, write_text
 from smash.problem.files.plans import read_plan
 from smash.problem.words import one_line
 
@@ -127,4 +127,4 @@ def table(into: Path | None, directory: Path | None) -> None:
     if into is None:
         click.echo(text, nl=False)
     else:
-        write_text(into, put_between(read_bytes(into).decode(), text, str(into)))
+        write_text(into, put_between(read_text(into), text, str(into)))

@@ -9,7 +9,7 @@ import click
 
 from smash.cli.choices import PACE, engine_option
 from smash.cli.signals import stopped_by_signals
-from smash.experiments.episodes.asked import note_asked
+from smash.experiments.episodes.asked import MOST_SEEDS, note_asked
 from smash.experiments.episodes.question import EpisodeRun
 from smash.experiments.episodes.series import POLICIES, REPLAYS, episode_runs, run_all
 from smash.experiments.sweeps.display import span
@@ -26,7 +26,9 @@ SECONDS_AN_EPISODE = 5.0
 
 @click.command("episodes")
 @click.argument("results", type=click.Path(path_type=Path, exists=True, file_okay=False))
-@click.option("--seeds", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="Seeds 0 to N-1.")
+@click.option(
+    "--seeds", type=click.IntRange(1, MOST_SEEDS), default=1, show_default=True, metavar="N", help="Seeds 0 to N-1."
+)
 @click.option(
     "--policy",
     "policies",

@@ -80,9 +80,12 @@ def read_best_known(directory: Path) -> BestKnown:
         raise MalformedFile(str(directory), f"no {FILE} there; without --list it is {LIST}")
     known = BestKnown(directory)
     rows = csv.DictReader(io.StringIO(read_bytes(path).decode("utf-8", errors="replace")))
-    for number, row in enumerate(rows, start=2):
-        entry = _entry(row, f"{path}:{number}")
-        known.entries[entry.instance, entry.variant] = entry
+    try:
+        for number, row in enumerate(rows, start=2):
+            entry = _entry(row, f"{path}:{number}")
+            known.entries[entry.instance, entry.variant] = entry
+    except csv.Error as error:
+        raise MalformedFile(str(path), f"no table: {error}") from None
     return known
 
 

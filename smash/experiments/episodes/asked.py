@@ -5,16 +5,17 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Literal, cast
+from typing import Annotated, Literal, cast
 
 import msgspec
 
 from smash.experiments.episodes.question import EpisodeRun
 from smash.experiments.episodes.series import episode_runs, told_apart
-from smash.problem.errors import MalformedFile
-from smash.problem.files.documents import convert, read_bytes, write_text
+from smash.problem.files.documents import convert, parse_json, read_bytes, write_text
 
 ASKED = "episodes-asked.json"
+MOST_SEEDS = 10_000
+"""Of one question."""
 
 
 class Question(msgspec.Struct, frozen=True):
@@ -24,7 +25,7 @@ class Question(msgspec.Struct, frozen=True):
     is what simulates them.
     """
 
-    seeds: int
+    seeds: Annotated[int, msgspec.Meta(ge=1, le=MOST_SEEDS)]
     policies: list[str]
     scene: str | None = None
     labels: list[str] = []
@@ -90,8 +91,5 @@ def _questions(results: Path) -> list[Question] | None:
     path = results / ASKED
     if not path.is_file():
         return None
-    try:
-        document = msgspec.json.decode(read_bytes(path))
-    except msgspec.DecodeError as error:
-        raise MalformedFile(str(path), f"not JSON: {error}") from None
+    document = parse_json(read_bytes(path), str(path))
     return list(cast(Asked, convert(document, Asked, str(path))).questions)

@@ -23,8 +23,9 @@ import msgspec
 from smash.experiments.environment import commit, load
 from smash.experiments.isolation.lifetime import end_with_parent
 from smash.experiments.reproduction.stages import MadeFrom, Stage, Stages, file_hash, made_from
+from smash.problem.errors import MalformedFile
 from smash.problem.extras import install_line, is_known
-from smash.problem.files.documents import convert, read_bytes, write_text
+from smash.problem.files.documents import convert, parse_json, read_bytes, write_text
 from smash.records.record import Commit
 
 HEARTBEAT = 10.0
@@ -241,8 +242,8 @@ class Reproduction:
         if not path.is_file():
             return None
         try:
-            document = msgspec.json.decode(read_bytes(path))
-        except msgspec.DecodeError:
+            document = parse_json(read_bytes(path), str(path))
+        except MalformedFile:
             return None  # cut off by a full disk: the stage is done anew
         return cast(StageRecord, convert(document, StageRecord, str(path)))
 

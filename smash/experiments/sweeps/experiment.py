@@ -24,7 +24,7 @@ from smash.planners.protocol import HIGHS, MOST_THREADS, SOLVERS, Settings, Solv
 from smash.planners.registry import COMMAND, get_planner, why_unknown
 from smash.problem.buffers import with_buffers
 from smash.problem.errors import MalformedFile, SmashError, Unsupported
-from smash.problem.files.documents import convert, parse_toml, read_bytes
+from smash.problem.files.documents import convert, parse_json, parse_toml, read_bytes
 from smash.problem.model import Instance
 from smash.problem.problem import Problem
 from smash.problem.sets.suites import read_suite, suite_names
@@ -322,8 +322,8 @@ def set_directory(suite: str, base: Path) -> Path:
     kept = base / INSTANCES / SETS
     if kept.is_file():
         try:
-            folder = json.loads(read_bytes(kept)).get(suite)
-        except (ValueError, AttributeError):
+            folder = parse_json(read_bytes(kept), str(kept)).get(suite)
+        except AttributeError:
             raise MalformedFile(str(kept), "not an object of sets and their folders") from None
         if isinstance(folder, str):
             return base / INSTANCES / folder

@@ -55,7 +55,7 @@ def parse_toml(content: bytes, where: str) -> dict[str, Any]:
         raise MalformedFile(where, "not UTF-8 text") from None
     except RecursionError:
         raise MalformedFile(where, "TOML nested too deeply") from None
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # a whole number that Python refuses to read is no TOMLDecodeError
         raise MalformedFile(where, f"not TOML: {error}") from None
 
 
@@ -70,6 +70,18 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise MalformedFile(os.fspath(path), f"cannot be read: {reason}") from None
+
+
+def read_text(path: str | os.PathLike[str]) -> str:
+    """Return the text of a file.
+
+    Raises:
+        MalformedFile: where it cannot be read, or is not UTF-8.
+    """
+    try:
+        return read_bytes(path).decode()
+    except UnicodeDecodeError:
+        raise MalformedFile(os.fspath(path), "not UTF-8 text") from None
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:
