@@ -38,6 +38,9 @@ from smash.problem.files.plans import read_plan
 )
 @click.option("--replay", type=click.Path(path_type=Path, dir_okay=False), help="Write a 3D replay as one HTML page.")
 @click.option("--video", type=click.Path(path_type=Path, dir_okay=False), help="Write a film (.mp4 or .gif).")
+@click.option("--video-size", metavar="WxH", help="Of the film [pixels], multiples of 16 (default: 480x368).")
+@click.option("--video-speed", metavar="N", help="It runs N times as fast as simulated time (default: 4).")
+@click.option("--video-camera", metavar="YAW,PITCH,DISTANCE", help="In degrees and metres (default: 28,-40,1.45).")
 @click.option("--stills", type=click.Path(path_type=Path, dir_okay=False), help="Draw start, middle and end (.png).")
 @click.option("--trajectory", type=click.Path(path_type=Path, dir_okay=False), help="Write joint positions as CSV.")
 @click.option("--gui", is_flag=True, help="Show PyBullet's window; MuJoCo has none.")
@@ -55,6 +58,9 @@ def command(
     budget: float,
     replay: Path | None,
     video: Path | None,
+    video_size: str | None,
+    video_speed: str | None,
+    video_camera: str | None,
     stills: Path | None,
     trajectory: Path | None,
     gui: bool,
@@ -66,6 +72,7 @@ def command(
     Examples:
       smash execute examples/figure1.json plan.json --replay episode.html
       smash execute examples/figure1.json plan.json --seed 3 --no-replan
+      smash execute examples/figure1.json plan.json --video film.mp4 --video-size 960x640 --video-speed 2
       smash execute examples/figure1.json plan.json --noise pose=3mm,yaw=2deg,friction=10% --pace 0.25
       smash execute examples/figure1.json plan.json --engine mujoco
     """
@@ -74,6 +81,8 @@ def command(
         require_engine(engine)
     if video is not None:
         require("smash execute --video", "imageio")
+    elif any(option is not None for option in (video_size, video_speed, video_camera)):
+        raise click.UsageError("--video-size, --video-speed and --video-camera go with --video")
     if stills is not None:
         require("smash execute --stills", "matplotlib")
     require_writable(replay, video, stills, trajectory, out)
@@ -82,9 +91,11 @@ def command(
     problem, filed = read_instance(instance), read_plan(plan)
     from smash.execution.scene.scene_file import default_scene, read_scene
     from smash.execution.viewing.capture import Capture
+    from smash.execution.viewing.film import film_of
     from smash.records.episodes import Performed, episode_text
 
-    capture = Capture(replay=replay, video=video, stills=stills, trajectory=trajectory)
+    film = film_of(video_size, video_speed, video_camera)
+    capture = Capture(replay=replay, video=video, stills=stills, trajectory=trajectory, film=film)
     tabletop = default_scene() if scene is None else read_scene(scene)
     from rich.console import Console
     from rich.markup import escape

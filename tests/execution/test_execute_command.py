@@ -68,6 +68,8 @@ def test_a_start_with_a_full_hand_is_one_line_and_exit_6(filed):
         (["--scene", "instance.json"], 2),
         (["--noise", "pose=3"], 2),
         (["--pace", "0"], 2),
+        (["--video-size", "480x368"], 2),
+        (["--video", "film.mp4", "--video-camera", "up"], 2),
         (["--seed", "-1"], 2),
         (["--video", "film.txt"], 2),
         (["--replay", "nowhere/r.html"], 2),

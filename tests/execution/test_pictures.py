@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from smash.execution.scene.scene_file import default_scene
-from smash.execution.viewing.pictures import FILM_SIZE, SPEED_UP, action_at, film_frames, write_film
+from smash.execution.viewing.film import FILM, action_at, film_frames, film_of, write_film
+from smash.problem import SmashError
 from tests.execution.made_up import episode_of, recording_of
 
 imageio = pytest.importorskip("imageio.v3")
@@ -24,16 +25,16 @@ def test_a_gif_plays_as_fast_as_its_caption_says(films):
     from PIL import Image, ImageSequence
 
     with Image.open(films / "film.gif") as gif:
-        assert gif.size == FILM_SIZE
+        assert gif.size == FILM.size
         assert gif.info["loop"] == 0
         total = sum(frame.info["duration"] for frame in ImageSequence.Iterator(gif)) / 1000
-    assert SECONDS / total == pytest.approx(SPEED_UP, rel=0.1)
+    assert SECONDS / total == pytest.approx(FILM.speed, rel=0.1)
 
 
 def test_an_mp4_plays_as_fast_as_its_caption_says(films):
     about = imageio.immeta(films / "film.mp4")
-    assert about["size"] == FILM_SIZE
-    assert SECONDS / about["duration"] == pytest.approx(SPEED_UP, rel=0.1)
+    assert about["size"] == FILM.size
+    assert SECONDS / about["duration"] == pytest.approx(FILM.speed, rel=0.1)
 
 
 def test_an_mp4_is_written_without_a_word(capfd, caplog, tmp_path):
@@ -42,9 +43,44 @@ def test_an_mp4_is_written_without_a_word(capfd, caplog, tmp_path):
     assert caplog.messages == []
 
 
+def test_size_speed_and_camera_are_chosen(tmp_path):
+    write_film(
+        tmp_path / "film.mp4",
+        recording_of(1, SECONDS),
+        default_scene(),
+        episode_of("one"),
+        film_of("192x160", "2", "90,-60,1"),
+    )
+    about = imageio.immeta(tmp_path / "film.mp4")
+    assert about["size"] == (192, 160)
+    assert SECONDS / about["duration"] == pytest.approx(2, rel=0.1)
+
+
+@pytest.mark.parametrize("size", ["480", "481x368", "16x16"])
+def test_a_size_that_no_film_has_is_refused(size):
+    with pytest.raises(SmashError, match="is not allowed"):
+        film_of(size)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        (None, "0", None),
+        (None, "nan", None),
+        (None, None, "1,2"),
+        (None, None, "0,10,1"),
+        (None, None, "0,-10,inf"),
+    ],
+)
+def test_a_film_that_cannot_be_is_refused_in_one_line(given):
+    with pytest.raises(SmashError, match="is not allowed") as refusal:
+        film_of(*given)
+    assert "\n" not in str(refusal.value)
+
+
 def test_the_caption_changes_with_the_action(films):
     frames = imageio.imread(films / "film.mp4").astype(int)
-    strips = frames[:, -20:, : FILM_SIZE[0] // 2]
+    strips = frames[:, -20:, : FILM.size[0] // 2]
     early, late = strips[1], strips[-1]
     assert np.abs(early - late).max() > 100
     assert np.abs(strips[0] - early).max() < 60
@@ -55,8 +91,8 @@ def test_the_caption_changes_with_the_action(films):
 def test_frames_are_evenly_apart_however_often_an_episode_was_recorded(interval):
     times = recording_of(1, 6.0, interval).times
     shown = np.array(times)[film_frames(times)]
-    assert np.abs(shown - np.arange(len(shown)) * 0.16).max() <= interval / 2 + 1e-6
-    assert shown[-1] > 6.0 - 0.16 - interval
+    assert np.abs(shown - np.arange(len(shown)) * 0.32).max() <= interval / 2 + 1e-6
+    assert shown[-1] > 6.0 - 0.32 - interval
 
 
 def test_one_frame_is_a_film():

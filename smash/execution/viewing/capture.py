@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from smash.execution.executor import Executor
 from smash.execution.physics.world import Frame
 from smash.execution.scene.tabletop import Tabletop
+from smash.execution.viewing.film import FILM, Film, write_film
 from smash.execution.viewing.recording import Recording
 from smash.execution.viewing.trajectory_file import write_trajectory
 from smash.problem.errors import MalformedFile
@@ -41,7 +42,9 @@ class Capture:
         video: Path | None = None,
         stills: Path | None = None,
         trajectory: Path | None = None,
+        film: Film = FILM,
     ) -> None:
+        self.film = film
         self.replay, self.video, self.stills, self.trajectory = replay, video, stills, trajectory
         _require_suffix(video, "a film", FILMS)
         _require_suffix(stills, "stills", PICTURES)
@@ -71,10 +74,8 @@ class Capture:
             with replacing(self.stills) as path:
                 self._write_stills(path, tabletop, episode)
         if self.video is not None:
-            from smash.execution.viewing.pictures import write_film
-
             with replacing(self.video) as path:
-                write_film(path, self.recording, tabletop, episode)
+                write_film(path, self.recording, tabletop, episode, self.film)
 
     def _write_stills(self, path: Path, tabletop: Tabletop, episode: Episode) -> None:
         from smash.execution.viewing.pictures import write_stills
