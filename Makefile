@@ -71,9 +71,9 @@ tables: needs-analysis-execution-pddl physics ## the paper's Tables I and II in 
 tables-full: needs-analysis-execution-pddl physics ## both tables whole: 20 instances a setting, up to 3 physics seeds (hours, said first; it can be resumed)
 	$(BIN)/python -m smash sweep experiments/tables-full.toml --out runs/tables-full --dry-run
 	$(BIN)/python -m smash sweep experiments/tables-full.toml --out runs/tables-full
-	$(BIN)/python -m smash episodes runs/tables-full --label smash --policy replan --policy open --jobs 2
+	$(BIN)/python -m smash episodes runs/tables-full --label smash --label 'smash, seconds' --policy replan --policy open --jobs 2
 	$(BIN)/python -m smash episodes runs/tables-full --label fd-lama --policy replan --jobs 2
-	$(BIN)/python -m smash episodes runs/tables-full --label smash --policy replan --seeds 3 --jobs 2
+	$(BIN)/python -m smash episodes runs/tables-full --label smash --label 'smash, seconds' --policy replan --seeds 3 --jobs 2
 	$(BIN)/python -m smash_analysis.execution_tables runs/tables-full
 
 scoop: needs-analysis-execution-pddl physics ## the paper's scoop: pick and place alone, with topple, scoop, lift; table and 3D replays (about 10 minutes)
@@ -84,10 +84,10 @@ scoop: needs-analysis-execution-pddl physics ## the paper's scoop: pick and plac
 friction: needs-analysis-execution physics ## the same plans under other friction, and topples by size (about 25 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/friction.toml --out runs/friction
 	$(BIN)/python -m smash episodes runs/friction --policy replan --policy open --jobs 2
-	$(BIN)/python -m smash topple-map --highest-cut 3 --jobs 2 --out runs/friction/default
+	$(BIN)/python -m smash topple-map --highest-cut 3 --most 6 --jobs 2 --out runs/friction/default
 	for scene in $(SCENES); do \
 	  $(BIN)/python -m smash episodes runs/friction --policy replan --policy open --jobs 2 --scene experiments/scenes/$$scene.toml && \
-	  $(BIN)/python -m smash topple-map --highest-cut 3 --jobs 2 --scene experiments/scenes/$$scene.toml --out runs/friction/$$scene \
+	  $(BIN)/python -m smash topple-map --highest-cut 3 --most 6 --jobs 2 --scene experiments/scenes/$$scene.toml --out runs/friction/$$scene \
 	    || exit 1; done
 	$(BIN)/python -m smash_analysis.execution_sweeps runs/friction $(addprefix runs/friction/,default $(SCENES))
 

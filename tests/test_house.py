@@ -13,7 +13,7 @@ PACKAGES = {
     "smash_analysis": ROOT / "analysis" / "smash_analysis",
 }
 GROUND = {"smash.problem", "smash.records"}
-WORKS = {"smash.gadget", "smash.planners", "smash_baselines", "smash.motion", "smash.execution"}
+WORKS = {"smash.gadget", "smash.planners", "smash_baselines", "smash.motion", "smash.forecast", "smash.execution"}
 FLOORS = {
     "smash.problem": set(),
     "smash.records": {"smash.problem"},
@@ -21,7 +21,8 @@ FLOORS = {
     "smash.planners": {"smash.problem", "smash.gadget"},
     "smash_baselines": {"smash.problem", "smash.gadget", "smash.planners"},
     "smash.motion": {"smash.problem"},
-    "smash.execution": GROUND | {"smash.motion"},
+    "smash.forecast": {"smash.problem"},
+    "smash.execution": GROUND | {"smash.motion", "smash.forecast"},
     "smash_analysis": GROUND,
     "smash.experiments": GROUND | WORKS | {"smash_analysis"},
     "smash.cli": GROUND | WORKS | {"smash", "smash.experiments", "smash_analysis"},
@@ -50,7 +51,7 @@ ORDERS = {
         *("writing", "believing"),
     ),
     "smash.experiments": (
-        *("environment", "isolation", "sweeps", "episodes", "best_known", "studies"),
+        *("environment", "isolation", "weighing", "sweeps", "episodes", "best_known", "studies"),
         *("reproduction", "planning", "executing", "comparison"),
     ),
     "smash_analysis": (

@@ -13,10 +13,11 @@ import click
 from smash.cli import fail
 from smash.cli.choices import SECONDS, check_command, command_option, encoding_option, without_option
 from smash.cli.signals import stopped_by_signals
-from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import DEFAULT_MEMORY, Job, Report
 from smash.experiments.planning import failure
-from smash.planners.protocol import HIGHS, MOST_THREADS, SOLVERS, OnIncumbent, Settings
+from smash.experiments.weighing import run_job
+from smash.forecast.model import read_model
+from smash.planners.protocol import ACTIONS, HIGHS, MOST_THREADS, OBJECTIVES, SOLVERS, OnIncumbent, Settings
 from smash.planners.registry import COMMAND, DEFAULT, why_unknown
 from smash.problem.errors import SmashError
 from smash.problem.files.documents import require_writable, write_text
@@ -66,6 +67,20 @@ from smash.problem.problem import Problem
 @click.option("--horizon", type=click.IntRange(min=1), metavar="T", help="Steps or layers of a time-indexed model.")
 @click.option("--threads", type=click.IntRange(1, MOST_THREADS), default=1, show_default=True, help="Solver threads.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="For planners that draw.")
+@click.option(
+    "--objective",
+    type=click.Choice(OBJECTIVES),
+    default=ACTIONS,
+    show_default=True,
+    help="What the plan is chosen for: the fewest actions, or the least expected time of its execution.",
+)
+@click.option("--robust", is_flag=True, help="Of equally good plans the one of least risk in execution.")
+@click.option(
+    "--model",
+    "outcomes",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Outcome model of the scene, of `smash topple-map --model` (default: that of the built-in scene).",
+)
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Write the plan here (default: print).")
 def command(
     instance: Path,
@@ -83,17 +98,26 @@ def command(
     horizon: int | None,
     threads: int,
     seed: int,
+    objective: str,
+    robust: bool,
+    outcomes: Path | None,
     out: Path | None,
 ) -> None:
     """Plan INSTANCE and print the plan as JSON, or write it with --out.
 
     The planner runs in processes of its own. Ctrl-C ends them and keeps the best plan found so far.
 
+    With `--objective seconds` its plans with topple and without are starts: of what annealing makes of them, the plan
+    is taken whose motions, rehearsed within the budget, are expected to take the least time (`expected_seconds`).
+    `cost`, `lower_bound` and `status` speak of actions all the same.
+
     \b
     Examples:
       smash plan examples/figure1.json
       smash plan examples/figure1.json --no-topple --planner precedence --out plan.json
       smash plan examples/figure1.json --planner smash-flow --solver cpsat
+      smash plan examples/figure1.json --objective seconds --budget 60
+      smash plan examples/figure1.json --robust
       smash plan examples/figure1.json --estimates runs/topple-map/estimates.json
       smash plan examples/figure1.json --command 'pyperplan -s gbf {domain} {problem}' --encoding pick-and-place
     """
@@ -107,13 +131,14 @@ def command(
     if warm_start is not None and (unknown := why_unknown(warm_start)) is not None:
         raise SmashError(unknown)
     problem = Problem(read_instance(instance), PlanOptions(not no_topple, max_topple or None, without=without))
-    settings = Settings(warm_start, horizon, threads, seed, command_line, encoding, solver)
+    settings = Settings(warm_start, horizon, threads, seed, command_line, encoding, solver, objective, robust)
     job = Job(planner, problem, settings, budget, memory)
     if math.isnan(budget):
         raise click.BadParameter("nan is no number of seconds", param_hint="--budget")
+    model = None if outcomes is None else read_model(outcomes)
     require_writable(out)
     with stopped_by_signals() as stop, _progress(planner) as tell:
-        report = run_isolated(job, tell, stop, for_this=True)
+        report = run_job(job, model, tell, stop, for_this=True)
     _write(report, out)
     _end(report, instance, planner, budget)
 
@@ -167,6 +192,9 @@ def _end(report: Report, instance: Path, planner: str, budget: float) -> None:
     }.get(report.outcome, f"{report.outcome}: {report.reason}")
     if report.exit_code:
         fail(f"{who}: {words}", report.exit_code)
+    note = report.plan.details.get("note")
+    if isinstance(note, str):
+        print(f"smash: {instance}: {note}", file=sys.stderr)
     if report.outcome == "over-budget":
         print(f"smash: {who}: {words}; its best plan is kept", file=sys.stderr)
 

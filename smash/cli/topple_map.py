@@ -24,37 +24,59 @@ if TYPE_CHECKING:
     "--highest-cut", type=click.IntRange(1, 9), default=4, show_default=True, metavar="H", help="Cuts 1 to H."
 )
 @click.option(
-    "--most", type=click.IntRange(1, 9), default=6, show_default=True, metavar="M", help="1 to M blocks fall."
+    "--most", type=click.IntRange(1, 9), default=9, show_default=True, metavar="M", help="1 to M blocks fall."
 )
 @click.option("--seeds", type=click.IntRange(min=1), default=4, show_default=True, metavar="N", help="Trials of each.")
+@click.option(
+    "--first-seed", type=click.IntRange(min=0), default=0, metavar="S", help="Seeds S, S + 1, … (default: 0)."
+)
 @click.option("--scene", type=click.Path(path_type=Path), help="Scene file (default: the built-in scene).")
 @engine_option
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="At a time.")
+@click.option(
+    "--model", type=click.Path(path_type=Path, dir_okay=False), help="Write the scene's outcome model here, too."
+)
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=Path("runs/topple-map"))
 def command(
-    highest_cut: int, most: int, seeds: int, scene: Path | None, engine: str | None, jobs: int, out: Path
+    highest_cut: int,
+    most: int,
+    seeds: int,
+    first_seed: int,
+    scene: Path | None,
+    engine: str | None,
+    jobs: int,
+    model: Path | None,
+    out: Path,
 ) -> None:
     """Topple piles of up to 9 blocks in simulation; write trials.jsonl, estimates.json and map.png to OUT.
 
     It may be stopped at any moment: start it again and it does the trials that are left.
 
+    With --model it rehearses picks and places, too, and writes what `smash plan --objective seconds --model` reads.
+
     \b
-    Example:
+    Examples:
       smash topple-map --highest-cut 3 --most 5 --jobs 2
+      smash topple-map --scene my-scene.toml --out runs/my-map --model my-model.json
+      smash plan my.json --objective seconds --model my-model.json
     """
     from smash.execution.physics.engines import engine_of
     from smash.execution.scene.scene_file import default_scene, read_scene
     from smash.execution.trials.estimates import ENOUGH, TRUSTED, write_estimates
+    from smash.execution.trials.outcome_model import outcome_model
     from smash.execution.trials.topple_map import draw, estimates
     from smash.experiments.episodes.topple_trials import run_trials, wanted_trials
+    from smash.forecast.model import write_model
+    from smash.problem.files.documents import require_writable
     from smash.records.files import TRIALS
     from smash.records.writing import Writer
 
+    require_writable(model)
     tabletop = default_scene() if scene is None else read_scene(scene)
     named, engine = engine, engine_of(tabletop, engine)
     say_engine(engine, tabletop, named)
     trials: dict[Hashable, Trial] = {}
-    wanted = wanted_trials(tabletop, engine, highest_cut, most, seeds)
+    wanted = wanted_trials(tabletop, engine, highest_cut, most, range(first_seed, first_seed + seeds))
 
     def ended(trial: Trial) -> None:
         trials[trial.key] = trial
@@ -73,6 +95,13 @@ def command(
     found = estimates(tabletop.name, chosen)
     write_estimates(found, out / "estimates.json")
     draw(chosen, out / "map.png")
+    if model is not None:
+        made = outcome_model(tabletop, chosen)
+        write_model(made, model)
+        click.echo(
+            f"{model}: {len(made.topples)} topples; {made.moves.count} picks and places, "
+            f"{100 * made.moves.explained:.0f} % of the variance of their times explained"
+        )
     suggested = found.suggested_max_topple
     none = f"none is trusted: {ENOUGH} trials of a size or more, {TRUSTED:.0%} of them successful, are needed"
     click.echo(f"{len(chosen)} trials in {out}; " + (f"suggested --max-topple {suggested}" if suggested else none))

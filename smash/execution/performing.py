@@ -254,3 +254,10 @@ def follow(world: World, segments: Sequence[Segment]) -> None:
             world.meant = segment.ignored
             world.follow(segment.trajectory, segment.opening)
             world.wait(PAUSE)
+
+
+def duration(segments: Sequence[Segment]) -> float:
+    """How long `follow` takes over planned motions, in simulated time [s]."""
+    return sum(
+        segment.seconds if isinstance(segment, Grip) else segment.trajectory.duration + PAUSE for segment in segments
+    )

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import Job, Report
-from smash.planners.protocol import Settings, ask
+from smash.experiments.weighing import run_job, weighed, weighs
+from smash.planners.protocol import ACTIONS, OBJECTIVES, Settings, ask
 from smash.planners.registry import DEFAULT, get_planner, make_ready
 from smash.problem.arguments import text, truth, whole_number
 from smash.problem.errors import PlannerCrashed, PlannerOutOfMemory, SmashError, Unsupported
@@ -36,6 +36,8 @@ def plan(
     max_topple: int | None = None,
     seed: int = 0,
     isolated: bool = False,
+    objective: str = ACTIONS,
+    robust: bool = False,
 ) -> Plan:
     """Plan one instance.
 
@@ -51,6 +53,9 @@ def plan(
         seed: for planners that draw.
         isolated: run it in processes of its own, ended when the budget or 4 GiB of memory are spent, as `smash plan`
             does; else here, where a planner that is stuck is not stopped.
+        objective: `actions` for the fewest, `seconds` for the least expected time of the execution in the default
+            scene: the plan then has `expected_seconds`.
+        robust: of equally good plans the one of least risk in execution.
 
     Returns:
         The plan: `status` is `optimal`, `feasible`, `infeasible` (proven) or `unknown` (budget spent without a plan).
@@ -65,10 +70,14 @@ def plan(
     text("planner", planner)
     topple, isolated = truth("topple", topple), truth("isolated", isolated)
     problem = Problem(given_instance(instance), PlanOptions(topple, max_topple))
-    job = Job(planner, problem, Settings(seed=seed), budget)
+    job = Job(
+        planner, problem, Settings(seed=seed, objective=_one_of(objective), robust=truth("robust", robust)), budget
+    )
     if not isolated:
+        if weighs(job):
+            return weighed(job, _reported_here, None).plan
         return _judged(_planned_here(job), job.instance)
-    report = run_isolated(job)
+    report = run_job(job)
     error = failure(report, planner)
     if error is not None:
         raise error
@@ -96,6 +105,18 @@ def _check(budget: float, max_topple: int | None, seed: int) -> None:
     if max_topple is not None:
         whole_number("max_topple", max_topple, 1)
     whole_number("seed", seed, 0)
+
+
+def _one_of(objective: str) -> str:
+    if objective not in OBJECTIVES:
+        raise SmashError(f"objective: {objective!r} is not allowed; {' or '.join(OBJECTIVES)}")
+    return objective
+
+
+def _reported_here(job: Job) -> Report:
+    """Run a planner in this process, for whoever weighs its plans."""
+    found = _judged(_planned_here(job), job.instance)
+    return Report("budget-spent" if found.status == "unknown" else found.status, found)
 
 
 def _planned_here(job: Job) -> Plan:

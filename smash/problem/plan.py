@@ -28,7 +28,8 @@ class Plan:
     `status` is `optimal` (proven), `feasible`, `infeasible` (proven) or `unknown` (budget spent).
     `lower_bound` is None where the planner proves none; `bound_origin` names the proof. Without a plan
     `actions` and `cost` are None. `details` holds what only this planner measures (model size, translation seconds); it
-    is in records, not in plan files.
+    is in records, not in plan files. `expected_seconds` is what the execution is expected to take, in a plan that was
+    chosen for that; cost, bound and status speak of actions all the same.
     """
 
     instance: str
@@ -41,6 +42,7 @@ class Plan:
     incumbents: tuple[Incumbent, ...] = ()
     stated_cost: int | None = None
     details: Mapping[str, Any] = field(default_factory=dict, compare=False)
+    expected_seconds: float | None = None
 
     @property
     def cost(self) -> int | None:

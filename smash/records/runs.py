@@ -80,6 +80,9 @@ class RunRecord(Record, kw_only=True, frozen=True):
     without: list[str] = msgspec.field(default_factory=list)
     command: str | None = None
     solver: str = "highs"
+    objective: str = "actions"
+    robust: bool = False
+    expected_seconds: Seconds | None = None
 
     @property
     def trace(self) -> list[tuple[float, int]]:
@@ -93,7 +96,7 @@ class RunRecord(Record, kw_only=True, frozen=True):
         Raises:
             MalformedFile: where it is malformed.
         """
-        fields = {name: getattr(self, name) for name in PLAN_FIELDS}
+        fields = {name: getattr(self, name) for name in PLAN_FIELDS} | {"expected_seconds": self.expected_seconds}
         return plan_from_document({"format": PLAN_FORMAT_2, **fields}, "record")
 
 

@@ -20,12 +20,16 @@ def simulated(layout: str, engine: str) -> str:
 
 
 class Landing(msgspec.Struct, frozen=True):
-    """Where one block came to rest, in the push's frame, from the pile's middle [m]; whether it can be grasped."""
+    """Where one block came to rest, in the push's frame, from the pile's middle [m]; whether it can be grasped.
+
+    `seconds` is what the pick of it would take from where the push has left the arm, None where that is not known.
+    """
 
     level: int
     along: float
     aside: float
     graspable: bool
+    seconds: float | None = None
 
 
 class Trial(Record, kw_only=True, frozen=True):
@@ -42,6 +46,7 @@ class Trial(Record, kw_only=True, frozen=True):
         stands: Whether the lower part still stands at its place, by the law's reading of the scene.
         landings: One per toppled block, from the cut upward; empty where no push was found.
         problem: Why there was no push, or nothing.
+        seconds: Simulated time of the topple from the arm's ready pose until all lies still [s]; None in old records.
     """
 
     format: Literal["smash-topple-trial/1"] = TRIAL_FORMAT
@@ -56,6 +61,7 @@ class Trial(Record, kw_only=True, frozen=True):
     stands: bool = False
     landings: tuple[Landing, ...] = ()
     problem: str = ""
+    seconds: float | None = None
 
     @property
     def key(self) -> Key:

@@ -16,7 +16,7 @@ from smash.execution.actions.arm_motions import ArmMotions
 from smash.execution.actions.pick_and_place import PickAndPlace
 from smash.execution.actions.topple import strip
 from smash.execution.grounding import Grounder, Task
-from smash.execution.performing import Performer
+from smash.execution.performing import Performer, duration
 from smash.execution.physics.engines import engine_of, world_of
 from smash.execution.policy import OPEN
 from smash.execution.readback import read_state
@@ -71,13 +71,13 @@ def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: i
     )
     with world_of(engine)(chance.scene(), poses, READY, made=chance.made) as world:
         world.settle()
-        before = world.poses()
+        before, begun = world.poses(), world.time
         performer = Performer(world, Grounder(arm), Geometry(slots), OPEN, Sight(world, chance))
         try:
             performer.perform(Task(action, None), Performed(step=1, action=[], origin="plan"), performer.observe())
         except ExecutionFailure as failure:
             return msgspec.structs.replace(blank, problem=str(failure))
-        after, joints = world.poses(), world.commanded()
+        after, joints, seconds = world.poses(), world.commanded(), world.time - begun
     *_, expected = Law(instance).states([action])
     lower = expected.piles[location]
     return msgspec.structs.replace(
@@ -89,6 +89,7 @@ def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: i
             for level, block in enumerate(names, start=1)
             if block in expected.table
         ),
+        seconds=seconds,
     )
 
 
@@ -98,11 +99,10 @@ def _landing(
     position = poses[block].position
     along, aside = slot.coordinates(float(position[0]), float(position[1]), slot.directions[0])
     try:
-        PickAndPlace(arm).pick(joints, block, poses[block], arm.scene(poses))
-        graspable = True
+        segments, _ = PickAndPlace(arm).pick(joints, block, poses[block], arm.scene(poses))
     except ExecutionFailure:
-        graspable = False
-    return Landing(level, along, aside, graspable)
+        return Landing(level, along, aside, False)
+    return Landing(level, along, aside, True, duration(segments))
 
 
 def estimates(scene: str, trials: Iterable[Trial]) -> Estimates:

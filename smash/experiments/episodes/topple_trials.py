@@ -17,11 +17,11 @@ from smash.records.trials import Key, Trial, simulated
 from smash.records.writing import Writer
 
 
-def wanted_trials(tabletop: Tabletop, engine: str, highest_cut: int, most: int, seeds: int) -> list[Key]:
+def wanted_trials(tabletop: Tabletop, engine: str, highest_cut: int, most: int, seeds: range) -> list[Key]:
     """Return every trial that the scene allows: seeds first, so that a part is a fair sample; stacks in turn."""
     return [
         (simulated(tabletop.fingerprint, engine), seed % len(tabletop.stacks), height, falling, seed)
-        for seed in range(seeds)
+        for seed in seeds
         for height in range(1, highest_cut + 1)
         for falling in range(1, most + 1)
         if height - 1 + falling <= min(9, tabletop.highest)

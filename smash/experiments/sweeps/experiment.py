@@ -20,7 +20,7 @@ import msgspec
 from smash_baselines.engines.command import check_command, program_missing
 
 from smash.experiments.isolation.job import DEFAULT_MEMORY, Job
-from smash.planners.protocol import HIGHS, MOST_THREADS, SOLVERS, Settings, SolveOptions
+from smash.planners.protocol import ACTIONS, HIGHS, MOST_THREADS, OBJECTIVES, SOLVERS, Settings, SolveOptions
 from smash.planners.registry import COMMAND, get_planner, why_unknown
 from smash.problem.buffers import with_buffers
 from smash.problem.errors import MalformedFile, SmashError, Unsupported
@@ -35,7 +35,7 @@ INSTANCES = "instances"
 SETS = "sets.json"
 """`RESULTS/instances/sets.json`: set -> its folder beside the list, in a directory that holds its own experiment."""
 
-_SINCE = {"command": None, "encoding": None, "solver": HIGHS}
+_SINCE = {"command": None, "encoding": None, "solver": HIGHS, "objective": ACTIONS, "robust": False}
 """Settings that keys of earlier records do not know, and what they were: they are part of a key where they differ."""
 
 T = TypeVar("T")
@@ -57,6 +57,8 @@ class PlannerEntry(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     command: str | None = None
     encoding: str | None = None
     solver: str = HIGHS
+    objective: str = ACTIONS
+    robust: bool = False
     suites: list[str] | None = None
     instances: int | None = None
     buffers: list[int] | None = None
@@ -71,12 +73,19 @@ class PlannerEntry(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
     def settings(self, seed: int = 0) -> Settings:
         """Return how it solves."""
-        return Settings(self.warm_start, self.horizon, self.threads, seed, self.command, self.encoding, self.solver)
+        return Settings(
+            *(self.warm_start, self.horizon, self.threads, seed, self.command, self.encoding, self.solver),
+            objective=self.objective,
+            robust=self.robust,
+        )
 
     @property
     def shown(self) -> str:
-        """Its label; where none is given its name, with the solver where that is not the one of everybody."""
-        return self.label or (self.name if self.solver == HIGHS else f"{self.name} ({self.solver})")
+        """Its label; where none is given its name, with what is not everybody's: solver, objective, robust."""
+        apart = [self.solver] if self.solver != HIGHS else []
+        apart += [self.objective] if self.objective != ACTIONS else []
+        apart += ["robust"] if self.robust else []
+        return self.label or (f"{self.name} ({', '.join(apart)})" if apart else self.name)
 
 
 class Experiment(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
@@ -163,6 +172,8 @@ def check_experiment(experiment: Experiment, where: str = "experiment", *, to_ru
         expect(few, f"{part}.threads", f"{entry.threads} is not allowed; 1 to {MOST_THREADS}")
         allowed = f"{entry.solver!r} is not allowed; {', '.join(SOLVERS)}"
         expect(entry.solver in SOLVERS, f"{part}.solver", allowed)
+        allowed = f"{entry.objective!r} is not allowed; {', '.join(OBJECTIVES)}"
+        expect(entry.objective in OBJECTIVES, f"{part}.objective", allowed)
         expect(entry.horizon is None or entry.horizon >= 1, f"{part}.horizon", f"{entry.horizon} is not allowed")
         _check_grid(expect, f"{part}.", entry)
         label, chosen = entry.shown, (entry.planner, entry.settings())

@@ -16,11 +16,12 @@ from threading import Event
 from typing import Protocol
 
 from smash.experiments.environment import commit, load, machine, versions
-from smash.experiments.isolation.caller import run_isolated
-from smash.experiments.isolation.job import Report
+from smash.experiments.isolation.job import Job, Report
 from smash.experiments.sweeps.experiment import Run
-from smash.problem.errors import Interrupted, SmashError
+from smash.experiments.weighing import run_job
+from smash.problem.errors import Interrupted, SmashError, Unsupported
 from smash.problem.files.instances import instance_document
+from smash.problem.plan import Plan
 from smash.records.runs import RUN_FORMAT, RunRecord, VerdictField, instance_hash, plan_fields
 from smash.records.writing import Writer
 
@@ -83,7 +84,19 @@ def record_of(run: Run, report: Report, started: datetime, load_before: float) -
         commit=commit(),
         machine=machine(),
         command=job.settings.command,
+        objective=job.settings.objective,
+        robust=job.settings.robust,
+        expected_seconds=report.plan.expected_seconds,
     )
+
+
+def weighed_or_not(job: Job, stop: Event | None) -> Report:
+    """Run a job; where it asks for seconds or risk, and nothing is known of its scene, say `unsupported`."""
+    try:
+        return run_job(job, stop=stop)
+    except Unsupported as error:
+        empty = Plan(job.instance.name, job.planner, job.options, "unknown", None)
+        return Report("unsupported", empty, reason=str(error))
 
 
 def execute(run: Run, stop: Event | None = None, begun: Callable[[Run], None] | None = None) -> RunRecord | None:
@@ -93,7 +106,7 @@ def execute(run: Run, stop: Event | None = None, begun: Callable[[Run], None] | 
     if begun is not None:
         begun(run)
     started, load_before = datetime.now(UTC), load()
-    report = run_isolated(run.job, stop=stop)
+    report = weighed_or_not(run.job, stop)
     return None if report.outcome == "interrupted" else record_of(run, report, started, load_before)
 
 

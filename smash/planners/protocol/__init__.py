@@ -17,8 +17,11 @@ from smash.planners.protocol.planner import (
     why_unsupported,
 )
 from smash.planners.protocol.settings import (
+    ACTIONS,
     HIGHS,
     MOST_THREADS,
+    OBJECTIVES,
+    SECONDS,
     SOLVERS,
     Settings,
     SolveOptions,
@@ -27,8 +30,11 @@ from smash.planners.protocol.settings import (
 )
 
 __all__ = [
+    "ACTIONS",
     "HIGHS",
     "MOST_THREADS",
+    "OBJECTIVES",
+    "SECONDS",
     "SOLVERS",
     "SPARE_SECONDS",
     "BasePlanner",

@@ -10,6 +10,9 @@ HIGHS = "highs"
 """The solver of a MILP where none is named."""
 SOLVERS = (HIGHS, "cpsat", "scip", "gurobi")
 """The solvers that a planner with a MILP may be told to use."""
+ACTIONS, SECONDS = "actions", "seconds"
+OBJECTIVES = (ACTIONS, SECONDS)
+"""What a plan may be chosen for: the fewest actions, or the least expected seconds of its execution."""
 MOST_THREADS = 256
 """Threads that a solver may be given; with some thousands it does nothing but start them."""
 
@@ -26,6 +29,8 @@ class Settings:
         command: the command line of a program outside, for the planner `command`.
         encoding: the PDDL encoding that such a program is handed (None: the planner's choice).
         solver: solves the MILPs, one of `SOLVERS`.
+        objective: what a plan is chosen for, one of `OBJECTIVES`; planners count actions, whoever asks them weighs.
+        robust: whether plans of equal cost are told apart by their risk.
     """
 
     warm_start: str | None = None
@@ -35,11 +40,18 @@ class Settings:
     command: str | None = None
     encoding: str | None = None
     solver: str = HIGHS
+    objective: str = ACTIONS
+    robust: bool = False
 
     @property
     def cold(self) -> Settings:
         """The same for a planner that starts another one's model: no warm start, no horizon, no command."""
-        return replace(self, warm_start=None, horizon=None, command=None, encoding=None)
+        return replace(self.counting, warm_start=None, horizon=None, command=None, encoding=None)
+
+    @property
+    def counting(self) -> Settings:
+        """The same for a planner that is to count actions and nothing else."""
+        return replace(self, objective=ACTIONS, robust=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +65,8 @@ class SolveOptions(PlanOptions):
     command: str | None = None
     encoding: str | None = None
     solver: str = HIGHS
+    objective: str = ACTIONS
+    robust: bool = False
 
     @classmethod
     def of(cls, options: PlanOptions, settings: Settings) -> SolveOptions:

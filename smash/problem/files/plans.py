@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Literal, cast
+from typing import Annotated, Any, Literal, cast
 
 import msgspec
 
@@ -35,6 +35,7 @@ class _PlanFile(msgspec.Struct, forbid_unknown_fields=True):
     lower_bound: int | None = None
     bound_origin: str | None = None
     incumbents: list[tuple[float, int, str]] = []
+    expected_seconds: Annotated[float, msgspec.Meta(ge=0.0, le=1e9)] | None = None
 
 
 class _PlanFile2(_PlanFile):
@@ -105,6 +106,8 @@ def plan_from_document(document: Any, where: str = "plan") -> Plan:
         raise MalformedFile(where, f"`actions`: status {file.status} has no plan; null is allowed")
     if file.actions is None and file.status in ("optimal", "feasible"):
         raise MalformedFile(where, f"`actions`: null, but status {file.status} needs a plan")
+    if file.actions is None and file.expected_seconds is not None:
+        raise MalformedFile(where, "`expected_seconds`: there is no plan; leave it out")
     actions = None
     if file.actions is not None:
         actions = tuple(action_from_list(a, f"{where}: `actions[{i}]`") for i, a in enumerate(file.actions))
@@ -118,6 +121,7 @@ def plan_from_document(document: Any, where: str = "plan") -> Plan:
         bound_origin=file.bound_origin,
         incumbents=tuple(Incumbent(*entry) for entry in file.incumbents),
         stated_cost=file.cost,
+        expected_seconds=file.expected_seconds,
     )
 
 
@@ -135,6 +139,7 @@ def plan_document(plan: Plan) -> dict[str, Any]:
         "cost": plan.cost,
         "lower_bound": plan.lower_bound,
         "bound_origin": plan.bound_origin,
+        **({} if plan.expected_seconds is None else {"expected_seconds": round(plan.expected_seconds, 2)}),
         "incumbents": [[round(i.seconds, 4), i.cost, i.origin] for i in plan.incumbents],
         "actions": None if plan.actions is None else [action_list(a) for a in plan.actions],
     }

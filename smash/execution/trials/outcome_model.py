@@ -1,0 +1,138 @@
+"""The outcome model of a scene: trials of topples, and the times of picks and places that are rehearsed for it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import msgspec
+import numpy as np
+
+from smash.execution.rehearsal import Rehearsal
+from smash.execution.scene.tabletop import Slot, Tabletop
+from smash.forecast.durations import TimedMove, fit
+from smash.forecast.expected import Forecaster
+from smash.forecast.model import Landed, MoveTimes, OutcomeModel, Spot, Toppled
+from smash.motion.robot import READY, panda
+from smash.problem.actions.topple import Topple
+from smash.problem.errors import SmashError
+from smash.problem.making import make_instance
+from smash.problem.model import TABLE, Action, Pick, Place, PositionsGoal, State
+from smash.problem.problem import Problem
+from smash.records.trials import Trial
+
+TROUBLE = 20.0
+"""Seconds that a block costs which cannot be grasped when its turn comes: six actions more, as the committed episodes
+that were planned anew had on average."""
+ROUNDS = 60
+"""Random arrangements that are rehearsed for the times of picks and places."""
+MOVES = 10
+"""Blocks that are moved in each."""
+TOPPLED_FIRST = 0.5
+"""Share of the arrangements in which a pile is toppled first."""
+TO_STACK = 0.6
+"""Share of the blocks that go to a stack's place; the others go to a buffer's."""
+DIGITS = 4
+
+
+def outcome_model(tabletop: Tabletop, trials: Iterable[Trial], *, rounds: int = ROUNDS, seed: int = 0) -> OutcomeModel:
+    """Make the model of a scene.
+
+    Args:
+        tabletop: The scene.
+        trials: Topples in it; those without a time are left out.
+        rounds: Random arrangements that are rehearsed.
+        seed: Of these.
+
+    Raises:
+        SmashError: where no trial can be used.
+    """
+    topples = tuple(_toppled(trial) for trial in trials if trial.seconds is not None and trial.landings)
+    if not topples:
+        raise SmashError("an outcome model takes trials with landings and times: none has both; make the map again")
+    bare = OutcomeModel(
+        scene=tabletop.name,
+        layout=tabletop.fingerprint,
+        side=tabletop.side,
+        highest=tabletop.highest,
+        ready=_ready()[0],
+        ready_height=_ready()[1],
+        stacks=tuple(map(_spot, tabletop.stacks)),
+        buffers=tuple(map(_spot, tabletop.buffers)),
+        moves=MoveTimes({}, 0.0, 0.0, 1),
+        trouble=TROUBLE,
+        topples=topples,
+    )
+    return msgspec.structs.replace(bare, moves=fit(timed_moves(tabletop, bare, rounds, seed)))
+
+
+def timed_moves(tabletop: Tabletop, model: OutcomeModel, rounds: int, seed: int) -> Iterator[TimedMove]:
+    """Yield the picks and places of random arrangements, as they are foreseen and what they take."""
+    rehearsal = Rehearsal(tabletop, model)
+    for number in range(rounds):
+        generator = np.random.default_rng([seed, number])
+        problem = _random_problem(tabletop, generator)
+        actions = list(_random_actions(problem, generator))
+        forecaster = Forecaster(problem, model)
+        walk = forecaster.begin()
+        for done in rehearsal.of(problem, actions, seed=number):
+            origin, first = walk.hand, walk.first
+            lying = isinstance(done.action, Pick) and done.action.source == TABLE
+            forecaster.step(walk, done.action)
+            if done.seconds is not None and isinstance(done.action, Pick | Place):
+                kind = "pick" if isinstance(done.action, Pick) else "place"
+                yield TimedMove(kind, origin, walk.hand, lying, first, done.seconds)
+
+
+def _random_problem(tabletop: Tabletop, generator: np.random.Generator) -> Problem:
+    """Four to nine blocks in random piles on the scene's stacks."""
+    count = int(generator.integers(4, min(9, tabletop.highest) + 1))
+    stacks = [f"s{number}" for number in range(1, len(tabletop.stacks) + 1)]
+    buffers = [f"u{number}" for number in range(1, len(tabletop.buffers) + 1)]
+    start: dict[str, list[str]] = {}
+    for number in range(1, count + 1):
+        start.setdefault(str(generator.choice(stacks)), []).append(f"b{number}")
+    blocks = [f"b{number}" for number in range(1, count + 1)]
+    return Problem(
+        make_instance(name="random", blocks=blocks, stacks=stacks, buffers=buffers, start=start, goal=PositionsGoal({}))
+    )
+
+
+def _random_actions(problem: Problem, generator: np.random.Generator) -> Iterator[Action]:
+    """A topple, perhaps; then blocks from anywhere to anywhere, those that lie on the table first."""
+    state, law, instance = State.start_of(problem.instance), problem.law, problem.instance
+
+    def do(action: Action) -> Action:
+        law.carry_out(state, action)
+        return action
+
+    piled = [location for location in instance.stacks if state.piles[location]]
+    if generator.random() < TOPPLED_FIRST:
+        location = str(generator.choice(piled))
+        yield do(Topple(location, int(generator.integers(1, len(state.piles[location]) + 1))))
+    for _ in range(MOVES):
+        tops = [Pick(pile[-1], location) for location, pile in state.piles.items() if pile]
+        picks = [Pick(block, TABLE) for block in sorted(state.table)] or tops
+        pick = picks[int(generator.integers(len(picks)))]
+        places = instance.stacks if generator.random() < TO_STACK or not instance.buffers else instance.buffers
+        targets = [location for location in places if location != pick.source] or list(places)
+        yield do(pick)
+        yield do(Place(pick.block, str(generator.choice(targets))))
+
+
+def _ready() -> tuple[Spot, float]:
+    """Where the hand is at the arm's ready pose, and how high."""
+    x, y, z = (float(value) for value in panda().forward(READY).position)
+    return Spot(round(float(np.hypot(x, y)), DIGITS), round(float(np.arctan2(y, x)), DIGITS)), round(z, DIGITS)
+
+
+def _spot(slot: Slot) -> Spot:
+    headings = tuple(round(slot.heading(direction), DIGITS) for direction in slot.directions)
+    return Spot(slot.radius, round(slot.angle, DIGITS), headings)
+
+
+def _toppled(trial: Trial) -> Toppled:
+    landed = tuple(
+        Landed(round(entry.along, DIGITS), round(entry.aside, DIGITS), entry.graspable) for entry in trial.landings
+    )
+    assert trial.seconds is not None
+    return Toppled(trial.height, trial.falling, trial.seed, trial.stands, round(trial.seconds, 2), landed)

@@ -1,0 +1,194 @@
+"""The outcome model of a scene, `smash-outcome-model/1`: what became of topples, and how long motions take.
+
+Lengths are in metres, angles in radians, times in seconds. The trials themselves are in the file, so that a
+distribution is what was seen and no curve through it; whoever wants a mean takes it.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from functools import cache
+from importlib.resources import as_file, files
+from pathlib import Path
+from typing import Annotated, Any, Final, Literal, cast
+
+import msgspec
+
+from smash.problem.errors import Unsupported
+from smash.problem.files.documents import check_format, convert, parse_json, read_bytes, write_text
+from smash.problem.model import Instance
+
+MODEL_FORMAT: Final = "smash-outcome-model/1"
+DEFAULT_MODEL = "default-model.json"
+"""The model of the default scene, beside this module."""
+
+Length = Annotated[float, msgspec.Meta(ge=-100.0, le=100.0)]
+Amount = Annotated[float, msgspec.Meta(ge=0.0, le=1e6)]
+Whole = Annotated[int, msgspec.Meta(ge=1, le=1000)]
+
+
+class Spot(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The place of a location: distance and bearing from the robot's base; headings of its topple directions."""
+
+    radius: Annotated[float, msgspec.Meta(gt=0.0, le=100.0)]
+    bearing: Annotated[float, msgspec.Meta(ge=-10.0, le=10.0)]
+    headings: tuple[float, ...] = ()
+
+
+class Landed(msgspec.Struct, frozen=True, array_like=True, forbid_unknown_fields=True):
+    """One toppled block: how far along the push and to its left it lies, and whether it could be grasped at once."""
+
+    along: Length
+    aside: Length
+    graspable: bool
+
+
+class Toppled(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One trial of a topple.
+
+    Attributes:
+        height: lowest level that fell, 1 is the bottom.
+        falling: how many fell.
+        seed: of the trial.
+        stands: whether the rest of the pile stood as it should.
+        seconds: what the topple took, from the arm's ready pose until all lay still.
+        landed: one per block, from the cut upward.
+    """
+
+    height: Whole
+    falling: Whole
+    seed: Annotated[int, msgspec.Meta(ge=0)]
+    stands: bool
+    seconds: Amount
+    landed: tuple[Landed, ...]
+
+
+class MoveTimes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """How long picks and places take: a linear model (`smash.forecast.durations`).
+
+    Attributes:
+        weights: seconds per unit of each feature.
+        spread: standard deviation of what the model leaves unexplained [s].
+        explained: share of the variance that it explains.
+        count: actions that it was fitted to.
+    """
+
+    weights: dict[str, float]
+    spread: Amount
+    explained: Annotated[float, msgspec.Meta(le=1.0)]
+    count: Annotated[int, msgspec.Meta(ge=1)]
+
+
+class OutcomeModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """What is known of one scene.
+
+    Attributes:
+        scene: its name.
+        layout: its fingerprint.
+        side: side of a block.
+        highest: the most blocks of a pile that the arm can work on.
+        ready: where the hand is before the first action.
+        ready_height: its height there.
+        stacks: places of `stacks`, in order.
+        buffers: places of buffers, in order.
+        moves: how long picks and places take.
+        trouble: seconds that a block costs which cannot be grasped when its turn comes (a new plan, more actions).
+        topples: the trials.
+    """
+
+    format: Literal["smash-outcome-model/1"] = "smash-outcome-model/1"
+    scene: str
+    layout: str
+    side: Annotated[float, msgspec.Meta(gt=0.0, le=1.0)]
+    highest: Whole
+    ready: Spot
+    ready_height: Length
+    stacks: tuple[Spot, ...]
+    buffers: tuple[Spot, ...]
+    moves: MoveTimes
+    trouble: Amount
+    topples: tuple[Toppled, ...]
+
+    def bind(self, instance: Instance) -> dict[str, Spot]:
+        """Give every location of an instance its place, in order.
+
+        Raises:
+            Unsupported: where the scene has fewer places, or lower piles, than the instance needs.
+        """
+        for what, wanted, room in (
+            ("stacks", len(instance.stacks), len(self.stacks)),
+            ("buffers", len(instance.buffers), len(self.buffers)),
+            ("blocks, which a plan may pile up", len(instance.blocks), self.highest),
+        ):
+            if wanted > room:
+                raise Unsupported(
+                    f"objective seconds: instance {instance.name!r} has {wanted} {what}; "
+                    f"the outcome model of scene {self.scene!r} knows {room}"
+                )
+        return {
+            **dict(zip(instance.stacks, self.stacks, strict=False)),
+            **dict(zip(instance.buffers, self.buffers, strict=False)),
+        }
+
+    def trials(self, height: int, falling: int) -> tuple[Toppled, ...]:
+        """Return the trials of this cut and size; those of the nearest size and cut where it was never tried.
+
+        A push of a whole pile is another motion than one above a rest, so that a cut at the bottom stands for no other
+        one where there is a choice.
+        """
+        cells = _cells(self)
+        if not cells:
+            return ()
+
+        def far(cell: tuple[int, int]) -> tuple[int, int, int]:
+            return abs(cell[1] - falling), (cell[0] == 1) != (height == 1), abs(cell[0] - height)
+
+        return cells[min(cells, key=far)]
+
+
+@cache
+def _cells_of(topples: tuple[Toppled, ...]) -> Mapping[tuple[int, int], tuple[Toppled, ...]]:
+    cells: dict[tuple[int, int], list[Toppled]] = {}
+    for trial in topples:
+        cells.setdefault((trial.height, trial.falling), []).append(trial)
+    return {cell: tuple(trials) for cell, trials in cells.items()}
+
+
+def _cells(model: OutcomeModel) -> Mapping[tuple[int, int], tuple[Toppled, ...]]:
+    return _cells_of(model.topples)
+
+
+def read_model(path: str | os.PathLike[str]) -> OutcomeModel:
+    """Read and check the file of an outcome model.
+
+    Raises:
+        MalformedFile: with one line that says where and what is allowed.
+    """
+    where = os.fspath(path)
+    return model_from_document(parse_json(read_bytes(path), where), where)
+
+
+def model_from_document(document: Any, where: str = "model") -> OutcomeModel:
+    """Build a model from a parsed document.
+
+    Raises:
+        MalformedFile: with one line that says where and what is allowed.
+    """
+    check_format(document, where, MODEL_FORMAT)
+    return cast(OutcomeModel, convert(document, OutcomeModel, where))
+
+
+@cache
+def default_model() -> OutcomeModel:
+    """Return the model of the default scene."""
+    with as_file(files("smash.forecast").joinpath(DEFAULT_MODEL)) as path:
+        return read_model(path)
+
+
+def write_model(model: OutcomeModel, path: Path) -> None:
+    """Write a model, a trial a line."""
+    document = msgspec.to_builtins(model)
+    trials = ",\n  ".join(msgspec.json.encode(trial).decode() for trial in document.pop("topples"))
+    head = ",\n ".join(f'"{key}": {msgspec.json.encode(value).decode()}' for key, value in document.items())
+    write_text(path, "{\n " + head + ',\n "topples": [\n  ' + trials + "\n ]\n}\n")

@@ -1,0 +1,142 @@
+"""The outcome model as a file, what is expected of a plan, and plans that are chosen for it."""
+
+import json
+from time import monotonic
+
+import pytest
+from click.testing import CliRunner
+
+import smash as door
+from smash.cli import smash
+from smash.forecast.durations import FEATURES, Point, TimedMove, features, fit, in_order, seconds
+from smash.forecast.expected import Forecaster
+from smash.forecast.model import default_model, model_from_document, read_model, write_model
+from smash.forecast.robust import least_risk
+from smash.forecast.search import faster
+from smash.problem.errors import MalformedFile, Unsupported
+from smash.problem.model import PlanOptions
+from smash.problem.problem import Problem
+
+FIGURE = "examples/figure1.json"
+
+
+@pytest.fixture(scope="module")
+def nine():
+    return door.suite("multi-9")[0]
+
+
+def forecaster(instance, **options):
+    return Forecaster(Problem(instance, PlanOptions(**options)), default_model())
+
+
+def test_a_model_is_read_back_as_written(tmp_path):
+    write_model(default_model(), tmp_path / "model.json")
+    assert read_model(tmp_path / "model.json") == default_model()
+
+
+@pytest.mark.parametrize("change", [{"side": 0}, {"topples": [{}]}, {"moves": None}, {"colour": 1}, {"format": "x"}])
+def test_a_malformed_model_is_refused_in_one_line(tmp_path, change):
+    write_model(default_model(), tmp_path / "model.json")
+    with pytest.raises(MalformedFile) as refusal:
+        model_from_document(json.loads((tmp_path / "model.json").read_text()) | change)
+    assert "\n" not in str(refusal.value)
+
+
+def test_the_model_holds_topples_of_up_to_nine_blocks():
+    assert {trial.falling for trial in default_model().topples} == set(range(1, 10))
+    assert all(len(trial.landed) == trial.falling for trial in default_model().topples)
+
+
+def test_a_cut_that_was_never_tried_stands_for_the_nearest():
+    assert {trial.falling for trial in default_model().trials(8, 2)} == {2}
+    assert {trial.height for trial in default_model().trials(8, 2)} == {4}
+
+
+def test_times_that_follow_the_model_are_found_again():
+    weights = dict.fromkeys(FEATURES, 0.0) | {"pick": 2.0, "place": 3.0, "swing x swing": 0.5}
+    points = [Point(0.4 + 0.02 * (i % 7), 0.3 * i - 2, 0.02 * (i * i % 5)) for i in range(60)]
+    moves = [
+        TimedMove(kind, one, other, False, False, seconds(in_order(weights), features(kind, one, other, False, False)))
+        for i, (one, other) in enumerate(zip(points, points[7:] + points[:7], strict=True))
+        for kind in (("pick", "place")[i % 2],)
+    ]
+    found = fit(moves)
+    assert found.explained > 0.999
+    assert found.spread < 0.01
+
+
+def test_a_plan_takes_as_long_as_its_actions(nine):
+    plan = door.plan(nine, budget=5)
+    forecast = forecaster(nine)
+    whole, parts = forecast.of(plan.actions), list(forecast.steps(plan.actions))
+    assert whole.seconds == pytest.approx(sum(part.seconds for part in parts))
+    assert 0.5 < whole.seconds / (3.4 * len(plan.actions)) < 2
+
+
+def test_toppled_blocks_are_expected_along_the_push(nine):
+    forecast = forecaster(nine)
+    near, far = (lying.at for lying in forecast.fall("s2", 1, 4).landed[::3])
+    assert abs(far.bearing - forecast.spots["s2"].bearing) > abs(near.bearing - forecast.spots["s2"].bearing) > 0.1
+
+
+def test_annealing_finds_no_slower_plan_than_it_began_with(nine):
+    forecast = forecaster(nine)
+    starts = [door.plan(nine, budget=5, topple=topple).actions for topple in (True, False)]
+    best = faster(forecast, starts, steps=300)[0]
+    assert forecast.law.check(best.actions).accepted
+    assert best.expected.seconds <= min(forecast.of(start).seconds for start in starts) + 1e-9
+    assert best.expected.seconds == pytest.approx(forecast.of(best.actions).seconds)
+    assert faster(forecast, starts, steps=300)[0].actions == best.actions
+
+
+def test_annealing_may_not_topple_where_the_options_forbid_it(nine):
+    start = door.plan(nine, budget=5, topple=False).actions
+    for found in faster(forecaster(nine, topple=False), [start], steps=300):
+        assert forecaster(nine, topple=False).law.check(found.actions).accepted
+
+
+def test_the_least_risk_costs_no_action():
+    instance = door.make_instance(
+        blocks=["a", "b", "c", "d"],
+        stacks=["s1", "s2"],
+        buffers=["u1"],
+        start={"s1": ["a", "b", "c", "d"]},
+        goal={"s2": ["d", "a", "c", "b"]},
+    )
+    plan = door.plan(instance, budget=5)
+    found = least_risk(forecaster(instance), plan.actions, monotonic() + 30)
+    assert found.exact
+    assert len(found.actions) == plan.cost
+    assert forecaster(instance).law.check(found.actions).accepted
+    assert found.risk <= forecaster(instance).of(plan.actions).risk
+
+
+def test_what_the_model_does_not_know_is_unsupported():
+    with pytest.raises(Unsupported, match="knows 4"):
+        forecaster(
+            door.make_instance(
+                start={f"s{n}": [f"b{n}"] for n in range(6)}, goal={"s1": [*map("b{}".format, range(6))]}
+            )
+        )
+
+
+def test_a_plan_for_seconds_says_what_it_expects(tmp_path):
+    out = tmp_path / "plan.json"
+    ended = CliRunner().invoke(smash, ["plan", FIGURE, "--objective", "seconds", "--budget", "0.5", "--out", str(out)])
+    assert ended.exit_code == 0, ended.output
+    document = json.loads(out.read_text())
+    assert document["expected_seconds"] > 0
+    assert document["status"] == ("optimal" if document["cost"] == document["lower_bound"] else "feasible")
+    assert CliRunner().invoke(smash, ["validate", FIGURE, str(out)]).exit_code == 0
+
+
+def test_the_door_takes_the_objective():
+    assert door.plan(FIGURE, objective="seconds", budget=0.3).expected_seconds > 0
+    assert door.plan(FIGURE, robust=True, budget=1).expected_seconds is None
+    with pytest.raises(door.SmashError, match="actions or seconds"):
+        door.plan(FIGURE, objective="speed")
+
+
+def test_seconds_of_carriers_are_unsupported_before_anything_is_planned():
+    ended = CliRunner().invoke(smash, ["plan", "examples/scoop-seconds.json", "--objective", "seconds"])
+    assert isinstance(ended.exception, Unsupported)
