@@ -56,7 +56,8 @@ ORDERS = {
     ),
     "smash_analysis": (
         *("statistics", "metrics", "tables", "charts", "command"),
-        *("ablation", "comparison", "scaling", "execution_tables", "execution_sweeps", "scoop", "readme", "export"),
+        *("ablation", "comparison", "scaling", "execution_tables", "execution_sweeps", "paces", "robustness", "scoop"),
+        *("readme", "export"),
         "report",
     ),
 }

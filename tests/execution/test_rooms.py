@@ -10,6 +10,7 @@ ROOT = Path(__file__).parents[2]
 FLOORS = (
     "problem",
     "records",
+    "forecast",
     "motion",
     "execution.scene",
     "execution.actions",
