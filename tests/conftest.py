@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from smash.problem.extras import EXTRAS, MissingExtra, is_there
-from tests.experiments import troubled
+from tests.experiments.misbehaving import PLANNERS
 
 ROOT = Path(__file__).parent.parent
 # No test of the default run says how long something takes: a busy machine is no fault of what is drawn.
@@ -61,7 +61,7 @@ def third_party(tmp_path, monkeypatch):
     info = site / "troubled-1.0.dist-info"
     info.mkdir(parents=True)
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: troubled\nVersion: 1.0\n")
-    lines = [f"{name} = tests.experiments.troubled:{planner.__name__}" for name, planner in troubled.PLANNERS.items()]
+    lines = [f"{name} = {planner.__module__}:{planner.__name__}" for name, planner in PLANNERS.items()]
     (info / "entry_points.txt").write_text("\n".join(["[smash.planners]", *lines, ""]))
     monkeypatch.syspath_prepend(str(site))
     monkeypatch.setenv("PYTHONPATH", f"{site}:{ROOT}")

@@ -14,7 +14,8 @@ from threading import Event
 from time import monotonic
 from typing import Any
 
-from smash.experiments.isolation.job import Job, Report, longest
+from smash.experiments.isolation.job import STARTUP_LIMIT, Job, Report, longest
+from smash.experiments.isolation.lines import Lines
 from smash.experiments.isolation.starting import Guardian, guardian_of
 from smash.planners.protocol import OnIncumbent
 from smash.problem.errors import SmashError
@@ -29,6 +30,9 @@ LATENCY = 0.25
 """Seconds that a line may take on its way: a plan that is said to be older than that counts from its arrival."""
 _PATIENCE = 20.0
 """Seconds that a guardian has to say how a run ended that was stopped."""
+
+SAID_BY_PLANNERS = frozenset({"crashed", "memory", "not-installed", "malformed", "unsupported"})
+"""Outcomes that the process of a planner may name."""
 
 
 def run_isolated(
@@ -45,29 +49,28 @@ def run_isolated(
     """
     heard = _Heard(job, on_incumbent)
     with guardian_of(job, may_fork=for_this) as guardian:
-        for line in _lines(guardian, job, stop):
+        for line in _lines(guardian, heard, stop):
             if not heard.hear(line):
                 break
     return heard.report(interrupted=stop is not None and stop.is_set())
 
 
-def _lines(guardian: Guardian, job: Job, stop: Event | None) -> Iterator[bytes]:
+def _lines(guardian: Guardian, heard: _Heard, stop: Event | None) -> Iterator[bytes]:
     """Yield what the guardian says until it ends; where `stop` is set, close its input and hear it out."""
-    last = monotonic() + longest(job.budget)
-    unread = b""
+    said = Lines()
     with selectors.DefaultSelector() as selector:
         selector.register(guardian.stdout, selectors.EVENT_READ)
-        while monotonic() < last:
+        while monotonic() < heard.until:
             if stop is not None and stop.is_set() and not guardian.stdin.closed:
                 guardian.stdin.close()
-                last = monotonic() + _PATIENCE
+                heard.until = monotonic() + _PATIENCE
             if not selector.select(0.1):
                 continue
             chunk = os.read(guardian.stdout.fileno(), 1 << 16)
             if not chunk:
                 return
-            *lines, unread = (unread + chunk).split(b"\n")
-            yield from lines
+            yield from said.feed(chunk)
+    heard.silent = True
 
 
 def when(said: float, arrived: float) -> float:
@@ -90,13 +93,18 @@ class _Heard:
         self._answer: Mapping[str, Any] | None = None
         self._failure: Mapping[str, Any] | None = None
         self._ended: Mapping[str, Any] | None = None
+        self._solving = False
+        self.until = monotonic() + longest(job.budget)
+        """When whoever guards the run is given up."""
+        self.silent = False
+        """Whether it was."""
 
     def hear(self, line: bytes) -> bool:
         """Take one line of a run; False where it is none, after which nothing is believed any more."""
         try:
             message = json.loads(line)
             self._take(message)
-        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError, OverflowError):
             words = f"planner {self._job.planner!r} wrote to the pipe on which its run speaks: {line[:60]!r}"
             self._failure = {"outcome": "crashed", "reason": words}
             return False
@@ -115,9 +123,27 @@ class _Heard:
                 self._answer = message
                 self._take_answer(message, arrived)
             case "failed":
-                self._failure = message
+                self._failure = self._believed(message)
             case "ended":
-                self._ended = message
+                self._ended = self._believed(message)
+            case "solving":
+                self._solving = True
+                self.until = monotonic() + longest(self._job.budget) - STARTUP_LIMIT
+            case other:
+                raise ValueError(f"no line of a run: {other!r}")
+
+    def _believed(self, message: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return how a run ended, where whoever says so may.
+
+        Raises:
+            ValueError: where a planner says what its guardian alone can, or nobody.
+        """
+        outcome = message["outcome"]
+        if message["by"] == "planner" and (
+            message["kind"] == "ended" or outcome not in SAID_BY_PLANNERS or (outcome == "malformed" and self._solving)
+        ):
+            raise ValueError("said by the planner")
+        return message
 
     def report(self, interrupted: bool) -> Report:
         """Return the report, once nothing more is to come.
@@ -207,6 +233,8 @@ class _Heard:
     def _outcome(self, interrupted: bool) -> tuple[OutcomeName, str]:
         if self._cost is not None and self._proof.get("lower_bound", 0) > self._cost:
             self._refuse(f"lower bound {self._proof['lower_bound']}, yet there is a legal plan of {self._cost}")
+        if self._ended is not None and self._ended["outcome"] == "memory":
+            return "memory", self._ended["reason"]
         if self._failure is not None:
             return self._failure["outcome"], self._failure["reason"]
         if self._refusal is not None:
@@ -220,4 +248,4 @@ class _Heard:
             return "interrupted", "stopped from outside"
         if self._ended is not None:
             return self._ended["outcome"], self._ended["reason"]
-        return "crashed", "the process that guards the run was killed"
+        return "crashed", "the process that guards the run " + ("stood still" if self.silent else "was killed")

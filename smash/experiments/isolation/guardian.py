@@ -29,9 +29,14 @@ import psutil
 from smash.experiments.isolation.job import STARTUP_LIMIT, Job, grace
 from smash.experiments.isolation.leftovers import Left, end_tree, scratch_prefix
 from smash.experiments.isolation.lifetime import adopt_orphans, end_with_parent
+from smash.experiments.isolation.lines import Lines
 from smash.experiments.isolation.shared_memory import SharedMemory, mapped, set_apart
 from smash.experiments.isolation.solving import solve
 
+_LOST = 1
+"""Exit code of a planner's process that cannot even say what happened."""
+_PIPES = 32
+"""Reads after which whatever a pipe held has been read."""
 _ENDING = 10.0
 """Seconds that the planner's process has to be gone once it was killed."""
 SAMPLING = 0.1
@@ -59,7 +64,11 @@ def guard(job: Job, left: Left, apart: bool) -> None:
     except OSError as error:
         where = error.filename or scratch or left.folder
         words = f"{where}: a run cannot write there: {error.strerror}"
-        _say(json.dumps({"kind": "failed", "at": 0.0, "outcome": "malformed", "reason": words}).encode())
+        _say(
+            json.dumps(
+                {"kind": "failed", "at": 0.0, "by": "guardian", "outcome": "malformed", "reason": words}
+            ).encode()
+        )
     finally:
         shutil.rmtree(scratch, ignore_errors=True)
 
@@ -89,16 +98,19 @@ def _start(job: Job, said: BinaryIO) -> tuple[int, int]:
         os.close(writing)
         os.set_blocking(reading, False)
         return reading, planner
-    end_with_parent(guardian)
-    for number in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(number, signal.SIG_DFL)
-    os.close(reading)
-    nothing = os.open(os.devnull, os.O_RDONLY)
-    for source, target in ((nothing, 0), (said.fileno(), 1), (said.fileno(), 2)):
-        os.dup2(source, target)
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    faulthandler.enable()
-    solve(job, writing)
+    try:
+        end_with_parent(guardian)
+        for number in (signal.SIGTERM, signal.SIGINT):
+            signal.signal(number, signal.SIG_DFL)
+        os.close(reading)
+        nothing = os.open(os.devnull, os.O_RDONLY)
+        for source, target in ((nothing, 0), (said.fileno(), 1), (said.fileno(), 2)):
+            os.dup2(source, target)
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        faulthandler.enable()
+        solve(job, writing)
+    finally:
+        os._exit(_LOST)
 
 
 class _Watch:
@@ -111,7 +123,7 @@ class _Watch:
         self.planner = planner
         self.pipe = pipe
         self.said = said
-        self.unread = b""
+        self.lines = Lines()
         self.started: float | None = None
         self.deadline = monotonic() + STARTUP_LIMIT
         self.peak = 0.0
@@ -129,9 +141,7 @@ class _Watch:
                 pause = max(0.0, min(self.deadline, next_look) - monotonic())
                 ready = {key.fd for key, _ in selector.select(pause)}
                 if sys.stdin.fileno() in ready and not os.read(sys.stdin.fileno(), 4096):
-                    while self._pass_on():  # what it had said before it was stopped counts
-                        pass
-                    return
+                    return self._drain()  # what it had said before it was stopped counts
                 if self.pipe in ready and not self._pass_on():
                     selector.unregister(self.pipe)
                     self._reap(patience=1.0)
@@ -141,8 +151,7 @@ class _Watch:
                         return self._ended("memory", beyond)
                     next_look = monotonic() + SAMPLING
                 if self.answered or self.status is not None:
-                    while self._pass_on():
-                        pass
+                    self._drain()
                     self._reap(patience=0.5)
                     return self._ended(*self._at_its_end())
                 if monotonic() >= self.deadline:
@@ -166,8 +175,7 @@ class _Watch:
             chunk = os.read(self.pipe, 1 << 16)
         except BlockingIOError:
             return False
-        *lines, self.unread = (self.unread + chunk).split(b"\n")
-        for line in lines:
+        for line in self.lines.feed(chunk):
             kind = line[:40]
             if b'"solving"' in kind:
                 self.started = monotonic()
@@ -176,10 +184,19 @@ class _Watch:
             _say(self._stamped(line))
         return bool(chunk)
 
+    def _drain(self) -> None:
+        """Pass on what the pipe holds, and no more: there may be no end of it."""
+        for _ in range(_PIPES):
+            if not self._pass_on():
+                return
+
     def _stamped(self, line: bytes) -> bytes:
-        """Return a line of the planner with the time of its arrival, in seconds from the start of its clock."""
+        """Return a line of the planner with the time of its arrival [s], from the start of its clock.
+
+        What stands last in an object counts, so that no planner can say it itself, nor speak as the guardian.
+        """
         at = 0.0 if self.started is None else monotonic() - self.started
-        return b'{"at": %.6f, ' % at + line[1:] if line.startswith(b"{") else line
+        return b'%s, "at": %.6f, "by": "planner"}' % (line[:-1], at) if line.endswith(b"}") else line
 
     def _beyond_memory(self) -> str | None:
         """Return what of the run takes more than its limit, or None."""
@@ -251,6 +268,7 @@ class _Watch:
         message: dict[str, Any] = {
             "kind": "ended",
             "at": wall or 0.0,
+            "by": "guardian",
             "outcome": outcome,
             "reason": reason,
             "wall_seconds": wall,

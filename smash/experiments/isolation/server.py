@@ -142,7 +142,10 @@ def keep_only(asked: int, told: int, *others: int) -> None:
         os.dup2(source, target)
     os.closerange(len(wanted), os.sysconf("SC_OPEN_MAX"))
     sys.stdin = open(0, closefd=False)  # noqa: SIM115 - until the end
-    sys.stdout, sys.stderr = (open(number, "w", closefd=False) for number in (1, 2))  # noqa: SIM115
+    sys.stdout, sys.stderr = (
+        open(number, "w", closefd=False, errors="backslashreplace")  # noqa: SIM115
+        for number in (1, 2)
+    )
 
 
 def surroundings(request: dict[str, Any]) -> None:

@@ -17,7 +17,7 @@ from typing import Any, NoReturn
 
 from smash.experiments.isolation.job import Job
 from smash.planners.protocol import ask
-from smash.planners.registry import UnknownPlanner, get_planner, make_ready
+from smash.planners.registry import get_planner, make_ready, why_unknown
 from smash.problem.errors import SmashError, Unsupported
 from smash.problem.extras import MissingExtra
 from smash.problem.files.plans import action_list
@@ -33,8 +33,8 @@ def solve(job: Job, pipe: int) -> NoReturn:
     except MemoryError as error:
         voice.say(kind="failed", outcome="memory", reason=_words(error))
     except BaseException as error:
-        traceback.print_exc()
         voice.say(kind="failed", outcome="crashed", reason=_words(error))
+        traceback.print_exc()
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(0)
@@ -47,13 +47,14 @@ def _solve(job: Job, voice: _Voice) -> None:
         return voice.say(kind="failed", outcome="not-installed", reason=str(error))
     except SmashError as error:  # no such planner, or no such encoding for it
         return voice.say(kind="failed", outcome="malformed", reason=str(error))
+    warm_start = job.settings.warm_start
+    if warm_start is not None and (unknown := why_unknown(warm_start)) is not None:
+        return voice.say(kind="failed", outcome="malformed", reason=unknown)
     try:
         make_ready(planner, job.planner, job.problem, job.settings)
         voice.say(kind="solving")
         voice.started = perf_counter()
         plan = ask(planner, job.problem, job.settings, job.budget, voice, name=job.planner)
-    except UnknownPlanner as error:  # the one that is to warm-start it
-        return voice.say(kind="failed", outcome="malformed", reason=str(error))
     except MissingExtra as error:  # the solver that it is told to use
         return voice.say(kind="failed", outcome="not-installed", reason=str(error))
     except Unsupported as error:
@@ -107,7 +108,7 @@ def _answer(result: Plan) -> dict[str, Any]:
             "incumbents": [[float(at), int(cost), str(origin)] for at, cost, origin in result.incumbents],
             "details": jsonable(dict(result.details)),
         }
-    except (AttributeError, TypeError, ValueError) as error:
+    except (AttributeError, OverflowError, TypeError, ValueError) as error:
         raise TypeError(f"solve returned no valid PlanResult: {error}") from error
 
 

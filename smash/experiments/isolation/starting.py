@@ -43,9 +43,11 @@ class Guardian:
     Attributes:
         stdin: closed, it tells the guardian to stop.
         stdout: the lines that it says.
+        server: process id of the server that has forked it.
     """
 
-    def __init__(self, stdin: int, stdout: int, status: int, pid: int) -> None:
+    def __init__(self, stdin: int, stdout: int, status: int, pid: int, server: int) -> None:
+        self.server = server
         self.stdin: IO[bytes] = os.fdopen(stdin, "wb")
         self.stdout: IO[bytes] = os.fdopen(stdout, "rb", 0)
         self._status = status
@@ -104,6 +106,8 @@ def _ending(server: ForkServer, job: Job) -> Iterator[Guardian]:
         if well is None:
             guardian.kill()
             well = guardian.wait(_ENDING)
+        if well is None:
+            server.replace(guardian)
         guardian.close()
         if not well:
             clear_away(left)
@@ -147,6 +151,12 @@ class ForkServer:
             if self._owner == os.getpid():
                 self._drop(_ENDING)
 
+    def replace(self, guardian: Guardian) -> None:
+        """End the server that does not tell what became of a guardian; the next run starts another."""
+        with self._lock:
+            if self._process == guardian.server:
+                self._drop(patience=0.0)
+
     def _asked(self, left: Left) -> Guardian | None:
         """Return a guardian that waits for its job; None where the server is gone or stands still."""
         server = self._running()
@@ -160,7 +170,7 @@ class ForkServer:
             os.close(number)
         words = _line(status, _STARTING) if sent else None
         if words:
-            return Guardian(stdin, stdout, status, int(words))
+            return Guardian(stdin, stdout, status, int(words), self._process)
         for number in (stdin, stdout, status):
             os.close(number)
         return None
