@@ -141,7 +141,7 @@ class Executor:
     def _run_plan(self) -> ExecutionFailure | None:
         """Plan, execute, judge, and begin anew from what is observed as long as the policy allows it."""
         origin: Origin = "plan"
-        failure = self._start_shortfall()
+        failure = self._blindness() or self._start_shortfall()
         tasks = self._ground(self.plan.actions or (), self.law) if failure is None else []
         self.offline = sum(task.seconds for task in tasks)
         self.offline_cpu = sum(task.cpu_seconds for task in tasks)
@@ -156,6 +156,15 @@ class Executor:
             if again is None:
                 return failure
             tasks, origin, failure = again, "replan", None
+
+    def _blindness(self) -> ExecutionFailure | None:
+        """Whether some block cannot be seen well enough to be grasped ever: said before anything moves."""
+        try:
+            for block in self.instance.blocks:
+                self.performer.study(block)
+        except Blind as failure:
+            return failure
+        return None
 
     def _start_shortfall(self) -> ExecutionFailure | None:
         """Whether the piles stand that the instance starts with."""

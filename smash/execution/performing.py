@@ -7,7 +7,7 @@ block is in the hand.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot
+from math import hypot, inf
 
 import numpy as np
 
@@ -36,7 +36,8 @@ HELD_OPENING = 0.25
 """Where blocks are not seen exactly, the fingers tell: they stand this share of a side or more from the middle."""
 SURE = 3.0
 """A block is taken to be no further from where it is seen than so many standard deviations."""
-MOST_LOOKS = 25
+WORTH = 0.99
+"""Another look is worth it where the last one has brought what is not known down to this share of it or less."""
 LOOK_SECONDS = 1 / 30
 """From one look to the next, where one is not enough [s]."""
 MOVED = 0.004
@@ -105,13 +106,12 @@ class Performer:
         """
         if self.sight.exact:
             return
-        most = MAX_OPENING - self.side / 2
-        for _ in range(MOST_LOOKS):
-            self.look()
-            if SURE * self.sight.spread(block) <= OPENINGS[0]:
-                return
+        self.look()
+        most, before = MAX_OPENING - self.side / 2, inf
+        while (beside := SURE * self.sight.spread(block)) > OPENINGS[0] and beside < WORTH * before:
+            before = beside
             self.world.wait(LOOK_SECONDS)
-        beside = SURE * self.sight.spread(block)
+            self.look()
         if beside > most:
             room = f"the open hand leaves {most * 1e3:.1f} mm"
             raise Blind(f"block {block!r} may lie {beside * 1e3:.1f} mm beside where it is seen; {room}")
@@ -140,8 +140,13 @@ class Performer:
                 self.world.settle()
 
     def _try(self, task: Task, row: Performed, state: State) -> None:
-        if isinstance(task.action, Pick):
-            self.study(task.action.block)
+        match task.action:
+            case Pick(block, _):
+                self.study(block)
+            case Aggregating() if type(task.action) in MOTIONS:
+                grasped = MOTIONS[type(task.action)].grasped(task.action, state)
+                if grasped is not None:
+                    self.study(grasped)
         if task.segments is None or not self._usable(task, state):
             row.repaired = row.repaired or task.segments is not None
             task = self._planned(task, state, row)

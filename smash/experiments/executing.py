@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING
 
 from smash.experiments.episodes.executors import executor_of
-from smash.problem.arguments import whole_number
+from smash.problem.arguments import text, whole_number
 from smash.problem.errors import SmashError
 from smash.problem.extras import EXECUTION, require, require_engine
 from smash.problem.files.given import GivenInstance, GivenPlan, given_instance, given_plan
@@ -61,6 +61,10 @@ def execute(
         raise SmashError(f"robot: {robot!r} is not allowed; there is no choice of one, None is allowed")
     whole_number("seed", seed, 0, 2**31 - 1)
     problem = given_instance(instance)
+    if noise is not None:
+        text("noise", noise)
+    if pace is not None and (isinstance(pace, bool) or not isinstance(pace, int | float)):
+        raise SmashError(f"pace: {pace!r} is not allowed; a number above 0, up to 1")
     made = given_plan(plan, problem)
     return executor_of(
         problem, made, seed=seed, replan=replan, scene=scene, noise=noise, pace=pace, engine=engine

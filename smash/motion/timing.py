@@ -11,6 +11,8 @@ stays bounded, and the acceleration passes from one value to the next in that mo
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -184,21 +186,13 @@ def _toppra(waypoints: Waypoints, pace: Pace) -> Trajectory:
     # toppra loads a plotting library: a second that `smash plan` must not pay.
     import toppra
     from toppra.algorithm import TOPPRA
-    from toppra.constraint import (
-        JointAccelerationConstraint,
-        JointVelocityConstraint,
-        JointVelocityConstraintVarying,
-    )
+    from toppra.constraint import JointVelocityConstraintVarying
 
     points = densify(waypoints, SPLINE_STEP)
     points = points[np.concatenate([[True], np.any(np.abs(np.diff(points, axis=0)) > 1e-9, axis=1)])]
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     spline = toppra.SplineInterpolator(arc, points)
-    velocity, acceleration = pace.velocity * VELOCITY, min(pace.acceleration, MOST_ON_CURVES) * ACCELERATION
-    constraints = [
-        JointVelocityConstraint(np.column_stack([-velocity, velocity])),
-        JointAccelerationConstraint(np.column_stack([-acceleration, acceleration])),
-    ]
+    constraints = list(_joint_limits(pace.velocity, min(pace.acceleration, MOST_ON_CURVES)))
     if pace.tool_speed is not None:
         tool_speed = pace.tool_speed
         constraints.append(JointVelocityConstraintVarying(lambda s: _tool_limits(spline(s), spline(s, 1), tool_speed)))
@@ -213,6 +207,18 @@ def _toppra(waypoints: Waypoints, pace: Pace) -> Trajectory:
     positions, velocities = result(times), result(times, 1)
     positions[-1], velocities[-1] = waypoints[-1], 0.0
     return Trajectory(times, positions, velocities)
+
+
+@cache
+def _joint_limits(velocity: float, acceleration: float) -> tuple[Any, Any]:
+    """The constraints of toppra for shares of the joints' limits: they write themselves out as texts when made."""
+    from toppra.constraint import JointAccelerationConstraint, JointVelocityConstraint
+
+    speed, rise = velocity * VELOCITY, acceleration * ACCELERATION
+    return (
+        JointVelocityConstraint(np.column_stack([-speed, speed])),
+        JointAccelerationConstraint(np.column_stack([-rise, rise])),
+    )
 
 
 def _tool_limits(joints: NDArray[np.float64], tangent: NDArray[np.float64], speed: float) -> NDArray[np.float64]:

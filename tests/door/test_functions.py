@@ -206,6 +206,10 @@ def test_what_cannot_be_carried_out_is_said():
     ):
         with pytest.raises(smash.SmashError, match=words):
             smash.execute(FIGURE_1, [], **more)
+    for more in ({"noise": "pose=3"}, {"noise": {"pose": 0.003}}, {"pace": 0.0}, {"pace": "fast"}):
+        with pytest.raises(smash.SmashError, match="is not allowed") as refusal:
+            smash.execute(FIGURE_1, smash.plan(FIGURE_1), **more)
+        assert "\n" not in str(refusal.value)
     with pytest.raises(MalformedFile, match="cannot be read"):
         smash.execute(FIGURE_1, smash.plan(FIGURE_1), scene="nowhere.toml")
     held = smash.make_instance({"s1": ["a"]}, {"s1": ["a", "b"]}, hand="b")

@@ -159,10 +159,10 @@ def test_a_noisy_episode_succeeds_says_its_noise_and_is_the_same_again():
     assert episodes[0].without_measured_times() == episodes[1].without_measured_times()
 
 
-def test_a_block_that_is_not_known_well_enough_is_not_grasped_blindly_nor_planned_for_again():
+def test_blocks_that_are_not_known_well_enough_are_not_grasped_blindly_nor_planned_for_again():
     asked = []
     episode = run(*moved(), "camera=10mm", replanner=lambda *given: asked.append(given))
-    assert (episode.failure.name, episode.failure.step) == ("blind", 1)
+    assert (episode.failure.name, episode.failure.step) == ("blind", 0)
     assert "30.0 mm beside where it is seen" in episode.failure.reason
     assert (asked, episode.replans) == ([], 0)
 

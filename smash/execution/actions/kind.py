@@ -69,6 +69,10 @@ class AggregateMotion(ABC, Generic[A]):
         """Return whether the state after the motion asks for another one of the same action."""
         return False
 
+    def grasped(self, action: A, state: State) -> str | None:
+        """Return the block that the hand takes hold of, which has to be known well; None where it is none."""
+        return None
+
     def anchor(self, action: A, state: State, where: Geometry) -> Vector | None:
         """The position of what the hand takes hold of [m], shape (3,): a motion is good while it is there."""
         return None

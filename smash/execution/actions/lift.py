@@ -101,6 +101,10 @@ class LiftMotion(AggregateMotion[Lift]):
         """Return both locations."""
         return action.source, action.target
 
+    def grasped(self, action: Lift, state: State) -> str:
+        """Return the lowest of the lifted blocks."""
+        return _lifted(action, state)[0]
+
     def anchor(self, action: Lift, state: State, where: Geometry) -> Vector | None:
         """The block that is grasped, where its pose is known."""
         pose = where.blocks.get(_lifted(action, state)[0])
