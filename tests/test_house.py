@@ -44,7 +44,17 @@ ORDERS = {
     ),
     "smash_analysis": (
         *("statistics", "metrics", "tables", "charts", "command"),
-        *("ablation", "comparison", "scaling", "execution_tables", "execution_sweeps", "forecasts", "scoop", "readme", "export"),
+        *(
+            "ablation",
+            "comparison",
+            "scaling",
+            "execution_tables",
+            "execution_sweeps",
+            "forecasts",
+            "scoop",
+            "readme",
+            "export",
+        ),
         "report",
     ),
 }
