@@ -57,7 +57,7 @@ ORDERS = {
     "smash_analysis": (
         *("statistics", "metrics", "tables", "charts", "command"),
         *("ablation", "comparison", "scaling", "execution_tables", "execution_sweeps", "paces", "robustness", "scoop"),
-        *("readme", "export"),
+        *("forecasts", "readme", "export"),
         "report",
     ),
 }

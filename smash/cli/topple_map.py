@@ -36,6 +36,11 @@ if TYPE_CHECKING:
 @click.option(
     "--model", type=click.Path(path_type=Path, dir_okay=False), help="Write the scene's outcome model here, too."
 )
+@click.option(
+    "--against",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Hold this outcome model against the trials (others than it was made from): calibration.md.",
+)
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=Path("runs/topple-map"))
 def command(
     highest_cut: int,
@@ -46,6 +51,7 @@ def command(
     engine: str | None,
     jobs: int,
     model: Path | None,
+    against: Path | None,
     out: Path,
 ) -> None:
     """Topple piles of up to 9 blocks in simulation; write trials.jsonl, estimates.json and map.png to OUT.
@@ -59,15 +65,17 @@ def command(
       smash topple-map --highest-cut 3 --most 5 --jobs 2
       smash topple-map --scene my-scene.toml --out runs/my-map --model my-model.json
       smash plan my.json --objective seconds --model my-model.json
+      smash topple-map --first-seed 4 --out runs/check --against my-model.json
     """
     from smash.execution.physics.engines import engine_of
     from smash.execution.scene.scene_file import default_scene, read_scene
+    from smash.execution.trials.calibration import calibrations, table
     from smash.execution.trials.estimates import ENOUGH, TRUSTED, write_estimates
     from smash.execution.trials.outcome_model import outcome_model
     from smash.execution.trials.topple_map import draw, estimates
     from smash.experiments.episodes.topple_trials import run_trials, wanted_trials
-    from smash.forecast.model import write_model
-    from smash.problem.files.documents import require_writable
+    from smash.forecast.model import read_model, write_model
+    from smash.problem.files.documents import require_writable, write_text
     from smash.records.files import TRIALS
     from smash.records.writing import Writer
 
@@ -75,6 +83,7 @@ def command(
     tabletop = default_scene() if scene is None else read_scene(scene)
     named, engine = engine, engine_of(tabletop, engine)
     say_engine(engine, tabletop, named)
+    judged = None if against is None else read_model(against)
     trials: dict[Hashable, Trial] = {}
     wanted = wanted_trials(tabletop, engine, highest_cut, most, range(first_seed, first_seed + seeds))
 
@@ -102,6 +111,10 @@ def command(
             f"{model}: {len(made.topples)} topples; {made.moves.count} picks and places, "
             f"{100 * made.moves.explained:.0f} % of the variance of their times explained"
         )
+    if judged is not None:
+        held = table(calibrations(judged, chosen))
+        write_text(out / "calibration.md", f"{held}\n")
+        click.echo(held)
     suggested = found.suggested_max_topple
     none = f"none is trusted: {ENOUGH} trials of a size or more, {TRUSTED:.0%} of them successful, are needed"
     click.echo(f"{len(chosen)} trials in {out}; " + (f"suggested --max-topple {suggested}" if suggested else none))

@@ -15,7 +15,7 @@ from smash.execution.actions.arm_motions import ArmMotions
 from smash.execution.actions.grasps import CENTRED, Grasp
 from smash.execution.actions.topple import directions, pushes_needed
 from smash.execution.grounding import Grounder, Task
-from smash.execution.performing import duration
+from smash.execution.performing import PAUSE, duration
 from smash.execution.scene.block_pose import standing
 from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.start import starting_poses
@@ -130,11 +130,12 @@ class _Run:
         return duration(planned.segments or ()) + SETTLING
 
     def _move(self, task: Task, state: State) -> float | None:
-        planned = self._planned(task, state)
+        planned, waited = self._planned(task, state), 0.0
         if isinstance(task.action, Place):
             target = task.action.target
             self._where.blocks[task.action.block] = self._grounder.stand(target, state, self._where)
-        return None if planned is None else duration(planned.segments or ())
+            waited = PAUSE
+        return None if planned is None else duration(planned.segments or ()) + waited
 
     def _planned(self, task: Task, state: State) -> Task | None:
         """The task as it was planned before, or planned from where the arm is now; None where there is no motion."""

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from threading import Event
 from time import monotonic
 from typing import TYPE_CHECKING
@@ -36,6 +35,8 @@ FIRST, SECOND, ANNEALED = 0.4, 0.6, 0.7
 SEEDS = (0, 1)
 """Each of the fastest plans is rehearsed with these."""
 FINALISTS = 3
+AN_ACTION = 0.025
+"""A rehearsal takes about so long for each action of a plan [s]."""
 MODEL_ALONE = "by the outcome model alone"
 ANSWERS = ("optimal", "feasible", "over-budget", "budget-spent")
 """Ends of a run whose plan is weighed."""
@@ -88,21 +89,44 @@ def weighed(job: Job, solve: Solve, model: OutcomeModel | None, stopped: Callabl
     Raises:
         Unsupported: where the outcome model does not know the instance.
     """
-    begun = monotonic()
     forecaster = Forecaster(job.problem, model or default_model())
-    weighing = _Weighing(job, forecaster, begun, stopped)
     counted = replace(job, settings=job.settings.counting)
     if job.settings.objective == ACTIONS:
-        report = solve(replace(counted, budget=ANNEALED * job.budget))
-        return weighing.robust(report)
-    reports = [solve(replace(counted, budget=FIRST * job.budget))]
+        report, spent = _timed(solve, replace(counted, budget=ANNEALED * job.budget))
+        return _Weighing(job, forecaster, None, monotonic() - spent, stopped).robust(report)
+    rehearsal = _rehearsal(job, forecaster.model)
+    first, spent = _timed(solve, replace(counted, budget=FIRST * job.budget))
+    reports = [first]
     if reports[0].outcome not in ANSWERS:
         return reports[0]
     bare = Problem(job.instance, replace(job.options, topple=False))
     if job.options.topple and bare.infeasible is None:
-        left = max(SECOND * job.budget - (monotonic() - begun), 0.05 * job.budget)
-        reports.append(solve(replace(counted, problem=bare, budget=left)))
-    return weighing.fastest(reports)
+        left = max(SECOND * job.budget - spent, 0.05 * job.budget)
+        second, more = _timed(solve, replace(counted, problem=bare, budget=left))
+        reports.append(second)
+        spent += more
+    return _Weighing(job, forecaster, rehearsal, monotonic() - spent, stopped).fastest(reports)
+
+
+def _timed(solve: Solve, job: Job) -> tuple[Report, float]:
+    """Return a report, and how much of the budget it has cost [s]: import and start of processes are not counted."""
+    begun = monotonic()
+    report = solve(job)
+    return report, monotonic() - begun if report.wall_seconds is None else report.wall_seconds
+
+
+def _rehearsal(job: Job, model: OutcomeModel) -> Rehearsal | None:
+    """Make the scene's rehearsal ready; None where motions cannot be planned here, or the model is of another scene."""
+    if not all(is_there(module) for module in MOTIONS) or job.instance.hand is not None:
+        return None
+    from smash.execution.actions.arm_motions import ArmMotions
+    from smash.execution.rehearsal import Rehearsal
+    from smash.execution.scene.scene_file import default_scene
+
+    if default_scene().fingerprint != model.layout:
+        return None
+    ArmMotions(default_scene()).warm_up()
+    return Rehearsal(default_scene(), model)
 
 
 @dataclass(frozen=True)
@@ -111,6 +135,7 @@ class _Weighing:
 
     job: Job
     forecaster: Forecaster
+    rehearsal: Rehearsal | None
     begun: float
     stopped: Callable[[], bool]
 
@@ -149,22 +174,11 @@ class _Weighing:
             details["note"] = "not all optimal plans could be looked at: there may be one of less risk"
         return replace(report, plan=replace(plan, actions=found.actions, details=details))
 
-    @cached_property
-    def _rehearsal(self) -> Rehearsal | None:
-        """The scene's rehearsal; None where motions cannot be planned here, or the model is of another scene."""
-        if not all(is_there(module) for module in MOTIONS):
-            return None
-        from smash.execution.rehearsal import Rehearsal
-        from smash.execution.scene.scene_file import default_scene
-
-        fits = default_scene().fingerprint == self.forecaster.model.layout and self.job.instance.hand is None
-        return Rehearsal(default_scene(), self.forecaster.model) if fits else None
-
     def _why_not_rehearsed(self) -> str:
         missing = next((module for module in MOTIONS if not is_there(module)), None)
         if missing is not None:
             return f"no motion was rehearsed, which needs {missing}: {install_line(missing)}"
-        if self._rehearsal is None:
+        if self.rehearsal is None:
             return "no motion was rehearsed, which takes the built-in scene and an empty hand"
         return "the budget did not suffice to rehearse motions"
 
@@ -177,7 +191,7 @@ class _Weighing:
         def rehearse(actions: Iterable[tuple[Action, ...]], seed: int) -> None:
             longest = 0.0
             for plan in actions:
-                begun = monotonic()
+                begun, longest = monotonic(), max(longest, AN_ACTION * len(plan))
                 if begun + longest > until or self.stopped():
                     return
                 seen.setdefault(plan, []).append(self._seconds(plans[plan], seed))
@@ -186,7 +200,7 @@ class _Weighing:
         def mean(actions: tuple[Action, ...]) -> tuple[float, float]:
             return round(sum(seen[actions]) / len(seen[actions]), 1), plans[actions].expected.risk
 
-        if self._rehearsal is not None:
+        if self.rehearsal is not None:
             rehearse(plans, SEEDS[0])
             for seed in SEEDS[1:]:
                 rehearse(sorted(seen, key=mean)[:FINALISTS], seed)
@@ -200,9 +214,9 @@ class _Weighing:
 
     def _seconds(self, candidate: Candidate, seed: int) -> float:
         """Return what a plan takes in one rehearsal, what it risks included [s]."""
-        assert self._rehearsal is not None
+        assert self.rehearsal is not None
         trouble = self.forecaster.model.trouble
-        rehearsed = self._rehearsal.of(self.job.problem, candidate.actions, seed)
+        rehearsed = self.rehearsal.of(self.job.problem, candidate.actions, seed)
         foreseen = list(self.forecaster.steps(candidate.actions))
         missed = [done.action for done in rehearsed if done.seconds is None]
         stuck = sum(isinstance(action, Pick) and action.source == TABLE for action in missed)

@@ -143,7 +143,7 @@ class Forecaster:
         match action:
             case Pick(block, source):
                 target = self.grasp(walk, block, source)
-                risk = self._trouble(walk, block) if source == TABLE else 0.0
+                risk = self.model.stuck * self.danger(walk, block) if source == TABLE else 0.0
                 taken = self._moved("pick", walk, target, source == TABLE)
                 walk.lying.pop(block, None)
             case Place(_, location):
@@ -174,6 +174,18 @@ class Forecaster:
             known = walk.lying.get(block)
             return self._region() if known is None else known.at
         return self._above(source, len(walk.state.piles[source]) - 0.5)
+
+    def danger(self, walk: Walk, block: str) -> float:
+        """Return how probably a block of the table region has a neighbour or a pile so near that it may be stuck."""
+        known = walk.lying.get(block)
+        if known is None:
+            return 0.0
+        left = sum(other in walk.state.table for other in known.companions)
+        danger = known.blocked * left / len(known.companions) if known.companions else known.blocked
+        for location, share in known.beside.items():
+            if walk.state.piles[location]:
+                danger = max(danger, share)
+        return danger
 
     def fall(self, location: str, height: int, falling: int) -> Fall:
         """Return what is expected of a topple at a location."""
@@ -208,18 +220,6 @@ class Forecaster:
             sum(not trial.stands for trial in trials) / len(trials),
             tuple(landed),
         )
-
-    def _trouble(self, walk: Walk, block: str) -> float:
-        """Return how probably a block in the table region cannot be grasped when its turn comes."""
-        known = walk.lying.get(block)
-        if known is None:
-            return 0.0
-        left = sum(other in walk.state.table for other in known.companions)
-        risk = known.blocked * left / len(known.companions) if known.companions else known.blocked
-        for location, share in known.beside.items():
-            if walk.state.piles[location]:
-                risk = max(risk, share)
-        return risk
 
     def _moved(self, kind: str, walk: Walk, target: Point, lying: bool) -> float:
         move = (kind, walk.hand, target, lying, walk.first)

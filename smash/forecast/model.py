@@ -94,6 +94,8 @@ class OutcomeModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_o
         buffers: places of buffers, in order.
         moves: how long picks and places take.
         trouble: seconds that a block costs which cannot be grasped when its turn comes (a new plan, more actions).
+        stuck: how often a block was stuck, in rehearsals, where a neighbour of its topple or a pile beside it could be
+            in the way: what is foreseen as danger is so much of a risk.
         topples: the trials.
     """
 
@@ -108,6 +110,7 @@ class OutcomeModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_o
     buffers: tuple[Spot, ...]
     moves: MoveTimes
     trouble: Amount
+    stuck: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
     topples: tuple[Toppled, ...]
 
     def bind(self, instance: Instance) -> dict[str, Spot]:

@@ -65,15 +65,16 @@ def faster(
     """
     found: dict[tuple[Action, ...], Expected] = {}
     for number, start in enumerate(starts):
+        now = monotonic()
+        last = None if until is None else now + max(0.0, until - now) / (len(starts) - number)
         actions = tuple(start)
         found[actions] = forecaster.of(actions)
         annealing = _Annealing(forecaster, actions, Random(f"{seed} {number}"))
-        left = len(starts) - number
         for step, candidate in enumerate(annealing.walk(steps)):
             if candidate is not None:
                 found[candidate.actions] = candidate.expected
             if step % 64 == 0:
-                if stopped() or (until is not None and monotonic() > until - (until - monotonic()) * (left - 1) / left):
+                if stopped() or (last is not None and monotonic() > last):
                     break
                 if len(found) > 20 * KEPT:
                     found = _fastest(found)

@@ -52,6 +52,17 @@ def test_a_planner_may_have_a_grid_and_a_label_of_its_own(tmp_path):
     assert {(run.suite, run.variant, run.job.options.max_topple) for run in mine} == {("single-4", "max-topple-2", 2)}
 
 
+def test_a_planner_for_seconds_is_run_at_each_budget_under_a_name_of_its_own(tmp_path):
+    grid = 'objective = "seconds"\nsuites = ["single-4"]\nbuffers = [1]\nvariants = ["topple"]\n'
+    mine = [run for run in runs_of(tmp_path, f'{GOOD}[[planners]]\nname = "greedy"\n{grid}') if run.suite == "single-4"]
+    assert {(run.label, run.kind, run.job.settings.objective) for run in mine} == {
+        ("greedy (seconds)", "budget", "seconds")
+    }
+    assert len(mine) == 2 * 3
+    with pytest.raises(MalformedFile, match="actions, seconds"):
+        runs_of(tmp_path, f'{GOOD}objective = "speed"')
+
+
 def test_instances_come_one_after_the_other(tmp_path):
     names = [run.job.instance.name for run in runs_of(tmp_path, GOOD)]
     assert names == sorted(names)

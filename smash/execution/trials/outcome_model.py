@@ -27,8 +27,10 @@ ROUNDS = 60
 """Random arrangements that are rehearsed for the times of picks and places."""
 MOVES = 10
 """Blocks that are moved in each."""
-TOPPLED_FIRST = 0.5
+TOPPLED_FIRST = 0.7
 """Share of the arrangements in which a pile is toppled first."""
+REBUILT = 0.5
+"""Share of its blocks that go back to where the pile was toppled: a pile grows beside those that still lie."""
 TO_STACK = 0.6
 """Share of the blocks that go to a stack's place; the others go to a buffer's."""
 DIGITS = 4
@@ -60,13 +62,26 @@ def outcome_model(tabletop: Tabletop, trials: Iterable[Trial], *, rounds: int = 
         buffers=tuple(map(_spot, tabletop.buffers)),
         moves=MoveTimes({}, 0.0, 0.0, 1),
         trouble=TROUBLE,
+        stuck=1.0,
         topples=topples,
     )
-    return msgspec.structs.replace(bare, moves=fit(timed_moves(tabletop, bare, rounds, seed)))
+    tried = list(tried_moves(tabletop, bare, rounds, seed))
+    dangers = sum(danger for _, danger in tried)
+    stuck = sum(move is None and danger > 0.0 for move, danger in tried)
+    return msgspec.structs.replace(
+        bare,
+        moves=fit(move for move, _ in tried if move is not None),
+        stuck=round(min(1.0, (stuck + 0.5) / (dangers + 1.0)), DIGITS),
+    )
 
 
-def timed_moves(tabletop: Tabletop, model: OutcomeModel, rounds: int, seed: int) -> Iterator[TimedMove]:
-    """Yield the picks and places of random arrangements, as they are foreseen and what they take."""
+def tried_moves(
+    tabletop: Tabletop, model: OutcomeModel, rounds: int, seed: int
+) -> Iterator[tuple[TimedMove | None, float]]:
+    """Yield the picks and places of random arrangements: as they are foreseen, what they take, and the danger.
+
+    Of an action without a motion there is None; danger is that of a pick from the table region, by the forecast.
+    """
     rehearsal = Rehearsal(tabletop, model)
     for number in range(rounds):
         generator = np.random.default_rng([seed, number])
@@ -77,10 +92,12 @@ def timed_moves(tabletop: Tabletop, model: OutcomeModel, rounds: int, seed: int)
         for done in rehearsal.of(problem, actions, seed=number):
             origin, first = walk.hand, walk.first
             lying = isinstance(done.action, Pick) and done.action.source == TABLE
+            danger = forecaster.danger(walk, done.action.block) if lying and isinstance(done.action, Pick) else 0.0
             forecaster.step(walk, done.action)
-            if done.seconds is not None and isinstance(done.action, Pick | Place):
+            if isinstance(done.action, Pick | Place):
                 kind = "pick" if isinstance(done.action, Pick) else "place"
-                yield TimedMove(kind, origin, walk.hand, lying, first, done.seconds)
+                taken = done.seconds
+                yield None if taken is None else TimedMove(kind, origin, walk.hand, lying, first, taken), danger
 
 
 def _random_problem(tabletop: Tabletop, generator: np.random.Generator) -> Problem:
@@ -106,8 +123,9 @@ def _random_actions(problem: Problem, generator: np.random.Generator) -> Iterato
         return action
 
     piled = [location for location in instance.stacks if state.piles[location]]
+    toppled = None
     if generator.random() < TOPPLED_FIRST:
-        location = str(generator.choice(piled))
+        toppled = location = str(generator.choice(piled))
         yield do(Topple(location, int(generator.integers(1, len(state.piles[location]) + 1))))
     for _ in range(MOVES):
         tops = [Pick(pile[-1], location) for location, pile in state.piles.items() if pile]
@@ -115,8 +133,9 @@ def _random_actions(problem: Problem, generator: np.random.Generator) -> Iterato
         pick = picks[int(generator.integers(len(picks)))]
         places = instance.stacks if generator.random() < TO_STACK or not instance.buffers else instance.buffers
         targets = [location for location in places if location != pick.source] or list(places)
+        rebuilt = toppled is not None and pick.source == TABLE and generator.random() < REBUILT
         yield do(pick)
-        yield do(Place(pick.block, str(generator.choice(targets))))
+        yield do(Place(pick.block, toppled if rebuilt and toppled else str(generator.choice(targets))))
 
 
 def _ready() -> tuple[Spot, float]:

@@ -1,7 +1,8 @@
 """An experiment: a short TOML file, checked whole before anything runs, and the list of runs that it means.
 
 One anytime run at the largest budget stands for every smaller one, since its incumbents carry their times. A
-planner that is `budget_dependent` (see `smash.planners.protocol`) is run at each budget by itself. To check the
+planner that is `budget_dependent` (see `smash.planners.protocol`) is run at each budget by itself, and so is one whose
+plans are weighed (`objective`, `robust`): its incumbents do not tell what less time would have led to. To check the
 reading, `cutoff_sample` runs of each other planner are repeated with every smaller budget as the real limit.
 """
 
@@ -248,7 +249,8 @@ def _entry_runs(
 ) -> Iterator[tuple[int, Run]]:
     """Yield (index of the instance in its suite, run) over the grid of one planner."""
     budgets = sorted(entry.budgets or experiment.budgets)
-    kind: RunKind = "budget" if dependent(entry.planner) else "anytime"
+    by_itself = entry.objective != ACTIONS or entry.robust or dependent(entry.planner)
+    kind: RunKind = "budget" if by_itself else "anytime"
     few = entry.instances or experiment.instances
     counts: list[int | None] = list(entry.buffers or experiment.buffers or []) or [None]
     for suite in entry.suites or experiment.suites:

@@ -1,0 +1,61 @@
+"""Rehearsals, and outcome models made from trials."""
+
+import pytest
+
+pytest.importorskip("pybullet")
+
+import smash as door
+from smash.execution.rehearsal import Rehearsal
+from smash.execution.scene.scene_file import default_scene
+from smash.execution.trials.calibration import calibrations, table
+from smash.execution.trials.outcome_model import outcome_model
+from smash.forecast.model import default_model
+from smash.problem.errors import SmashError
+from smash.problem.problem import Problem
+from smash.records.trials import Landing, Trial
+
+
+def trial(height, falling, seed=0, seconds=4.0):
+    landings = tuple(Landing(height + n, 0.1 * (n + 1), 0.0, True) for n in range(falling))
+    return Trial(
+        scene="s", stack=0, height=height, falling=falling, seed=seed, stands=True, landings=landings, seconds=seconds
+    )
+
+
+def test_a_rehearsal_times_every_action_and_repeats_itself():
+    instance = door.suite("multi-4")[0]
+    plan, rehearsal = door.plan(instance, budget=2), Rehearsal(default_scene(), default_model())
+    first = rehearsal.of(Problem(instance), plan.actions)
+    assert [done.action for done in first] == list(plan.actions)
+    assert all(done.seconds is not None and 1.0 < done.seconds < 12.0 for done in first)
+    assert rehearsal.of(Problem(instance), plan.actions) == first
+
+
+@pytest.mark.slow
+def test_a_rehearsed_plan_takes_what_its_execution_takes():
+    instance = door.suite("multi-4")[0]
+    plan = door.plan(instance, budget=2)
+    expected = sum(
+        done.seconds for done in Rehearsal(default_scene(), default_model()).of(Problem(instance), plan.actions)
+    )
+    assert expected == pytest.approx(door.execute(instance, plan).times.execution, rel=0.1)
+
+
+def test_a_model_is_made_of_trials_that_have_times():
+    made = outcome_model(default_scene(), [trial(1, 2), trial(2, 1), trial(1, 3, seconds=None)], rounds=1)
+    assert [(t.height, t.falling) for t in made.topples] == [(1, 2), (2, 1)]
+    assert made.moves.count > 5
+    with pytest.raises(SmashError, match="make the map again"):
+        outcome_model(default_scene(), [trial(1, 1, seconds=None)])
+
+
+def test_the_shipped_model_is_of_the_default_scene():
+    assert default_model().layout == default_scene().fingerprint
+
+
+def test_a_model_that_has_seen_the_trials_is_off_by_nothing():
+    made = outcome_model(default_scene(), [trial(1, 2)], rounds=1)
+    (row,) = calibrations(made, [trial(1, 2, seed=9)])
+    assert row.away == pytest.approx(0.0, abs=1e-6)
+    assert (row.within, row.graspable, row.brier, row.seconds_off) == (1.0, 1.0, 0.0, 0.0)
+    assert table([row]).count("\n") == 2
