@@ -12,11 +12,14 @@ from smash.planners.precedence.hitting_set import HittingSet, HittingSetSolver
 from smash.planners.precedence.schedule import Scheduler, chosen_of
 from smash.problem.model import Action
 from smash.problem.problem import Problem
+from smash.problem.views.demands import demands_of
 
 ORIGIN = "precedence"
 """The `bound_origin` of the bounds proven here."""
 SHORT = 0.2
 """Seconds that any schedule may take."""
+EMPTIED_SECONDS = 1.0
+"""For the choices that go with the piles that are to be emptied."""
 RESERVE = 2.0
 """How often the time of the schedule before is kept for the last one."""
 
@@ -77,7 +80,8 @@ def precedence_bound(
     relaxed = graph.base_cost + sum(graph.choices[choice].cost for choice in found.chosen)
     bound = graph.base_cost + found.bound
     if (plans.best is None or len(plans.best) > bound) and piles_decide(problem):
-        bound = max(bound, emptying_bound(problem, graph, found.cycles, deadline, tell, threads))
+        joined = emptying_bound(problem, graph, found.cycles, deadline, tell, threads, plans.offer_emptied)
+        bound = max(bound, joined)
     return PrecedenceBound(bound, relaxed, plans.best, graph, found)
 
 
@@ -107,14 +111,22 @@ class _Plans:
         """Seconds to keep for the last schedule, at most a tenth of the time left."""
         return min(RESERVE * self._took, 0.1 * max(0.0, self.deadline - perf_counter()))
 
+    def offer_emptied(self, kept: dict[str, int]) -> None:
+        """Schedule the cheapest choices with which no more blocks stay than `kept` says, per location."""
+        graph = build_graph(self.problem, demands_of(self.problem.posed, kept))
+        found = HittingSetSolver(graph).solve(min(self.deadline, perf_counter() + EMPTIED_SECONDS))
+        self._schedule(graph, found.chosen, 0.1)
+
     def offer(self, chosen: set[int], share: float = 0.0) -> None:
         """Schedule a choice, within a `share` of the time left; with share 0 only if that is quick enough."""
-        started = perf_counter()
-        if chosen == self._scheduled or (started < self._idle_until and not share):
+        if chosen == self._scheduled or (perf_counter() < self._idle_until and not share):
             return
         self._scheduled = set(chosen)
-        graph = self.graph
-        scheduler = Scheduler(self.problem, chosen_of(graph.choices, chosen))
+        self._schedule(self.graph, chosen, share)
+
+    def _schedule(self, graph: PrecedenceGraph, chosen: set[int], share: float) -> None:
+        started = perf_counter()
+        scheduler = Scheduler(self.problem, chosen_of(graph.choices, chosen), graph.demands)
         limit = started + max(SHORT, share * (self.deadline - started))
         actions = scheduler.plan(min(self.deadline, limit))
         if actions is not None and self.problem.open_rest is not None and not self._accepted(actions):

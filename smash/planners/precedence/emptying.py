@@ -55,6 +55,7 @@ def emptying_bound(
     deadline: float,
     on_bound: Callable[[int], object],
     threads: int = 1,
+    on_choice: Callable[[dict[str, int]], object] | None = None,
 ) -> int:
     """Return a bound on the cost of every plan of an `on` goal; 0 where there was no time for one.
 
@@ -65,6 +66,7 @@ def emptying_bound(
         deadline: when to stop, in seconds of `time.perf_counter`.
         on_bound: called with every better bound at once.
         threads: the solver's threads.
+        on_choice: called with what each solution keeps: per location how many of its lowest blocks.
     """
     finder = CycleFinder(graph)
     known = list(cycles)
@@ -88,6 +90,8 @@ def emptying_bound(
                 on_bound(bound)
         if solved.status != "optimal" or solved.vector is None:
             break
+        if on_choice is not None:
+            on_choice(model.kept(solved.vector))
         left = _left(finder, model.freedom(solved.vector), deadline)
         if not left:
             break
@@ -175,6 +179,11 @@ class _Model:
         blocks = [self.graph.blocks[block] for block in cycle]
         columns = [column[block] for block in blocks for column in (self.aside, self.fallen) if block in column]
         self._row([(column, 1.0) for column in columns], 1)
+
+    def kept(self, vector: Floats) -> dict[str, int]:
+        """Return per location how many of its lowest blocks a solution leaves where they are."""
+        start = self.problem.posed.start
+        return {at: sum(vector[self.removed[block]] < 0.5 for block in pile) for at, pile in start.items()}
 
     def freedom(self, vector: Floats) -> Floats:
         """Return per block of the graph 1 where it does not move directly in a solution."""

@@ -96,9 +96,14 @@ class PrecedenceGraph:
         return frozenset(c for b in blocks for c in range(int(self.choice_low[b]), int(self.choice_high[b])))
 
 
-def build_graph(problem: Problem) -> PrecedenceGraph:
-    """Build the precedence graph of a problem and the choices that its options allow."""
-    instance, options, demands = problem.instance, problem.options, problem.demands
+def build_graph(problem: Problem, demands: Demands | None = None) -> PrecedenceGraph:
+    """Build the precedence graph of a problem and the choices that its options allow.
+
+    Args:
+        problem: a plain one.
+        demands: what is asked of the blocks, where that is more than what the goal does.
+    """
+    instance, options, demands = problem.instance, problem.options, demands or problem.demands
     blocks: list[str] = []
     piles: list[tuple[str, int, int]] = []
     for location, pile in demands.leaving.items():

@@ -63,7 +63,6 @@ def _hitting_set(problem: Problem, settings: Settings, log: SolveLog, until: flo
         "relaxed_cost": found.relaxed_cost,
     }
     if found.actions is None:
-        log.details["reason"] = (
-            f"no plan of cost {found.relaxed_cost} found with {len(problem.instance.buffers)} buffers; "
-            "the value is a lower bound"
-        )
+        cost, count = max(found.relaxed_cost, found.bound), len(problem.instance.buffers)
+        buffers = "1 buffer" if count == 1 else f"{count} buffers"
+        log.details["reason"] = f"no plan of cost {cost} found with {buffers}; the value is a lower bound"

@@ -17,7 +17,7 @@ from smash.planners.precedence.graph import Choice
 from smash.problem.actions.topple import Topple
 from smash.problem.model import TABLE, Action, OnGoal, Pick, Place, State
 from smash.problem.problem import Problem
-from smash.problem.views.demands import Pile
+from smash.problem.views.demands import Demands, Pile
 
 Event = tuple[str, str]
 Segments = dict[str, list[tuple[int, int]]]
@@ -65,10 +65,10 @@ class Progress:
 
 
 class Scheduler:
-    """Schedules one set of choices for a problem."""
+    """Schedules one set of choices for a problem; `demands` where more is asked of the blocks than the goal does."""
 
-    def __init__(self, problem: Problem, choices: Sequence[Choice]) -> None:
-        instance, demands = problem.instance, problem.demands
+    def __init__(self, problem: Problem, choices: Sequence[Choice], demands: Demands | None = None) -> None:
+        instance, demands = problem.instance, demands or problem.demands
         self.law = problem.law
         self.instance = instance
         self.demands = demands

@@ -7,6 +7,7 @@ need a final placement, from the bottom to the top.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from smash.problem.model import Instance, OnGoal, PositionsGoal, StacksGoal
@@ -48,11 +49,16 @@ class Demands:
         return not self.placed and not self.loose
 
 
-def demands_of(instance: Instance) -> Demands:
-    """Work out what the goal of `instance` asks of its start."""
+def demands_of(instance: Instance, most: Mapping[str, int] | None = None) -> Demands:
+    """Work out what the goal of `instance` asks of its start.
+
+    Args:
+        instance: the problem.
+        most: of an `on` goal, how many of the lowest blocks of locations are kept at most; None: all that may stay.
+    """
     goal = instance.goal
     if isinstance(goal, OnGoal):
-        return _on_demands(instance, goal)
+        return _on_demands(instance, goal, most or {})
     return _located_demands(instance, goal)
 
 
@@ -75,7 +81,7 @@ def _located_demands(instance: Instance, goal: StacksGoal | PositionsGoal) -> De
     return _demands(instance, keep, build, ())
 
 
-def _on_demands(instance: Instance, goal: OnGoal) -> Demands:
+def _on_demands(instance: Instance, goal: OnGoal, most: Mapping[str, int]) -> Demands:
     above = {under: upper for upper, under in goal.on.items()}
     bottom, clear = frozenset(goal.bottom), frozenset(goal.clear)
     grounded = bottom.union(goal.ontable)
@@ -83,6 +89,7 @@ def _on_demands(instance: Instance, goal: OnGoal) -> Demands:
     stays: dict[str, str] = {}
     for location in instance.locations:
         standing = instance.start[location]
+        standing = standing[: most.get(location, len(standing))]
         under: str | None = None
         kept = 0
         for block in standing:
