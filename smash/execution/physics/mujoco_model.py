@@ -24,19 +24,17 @@ from smash.execution.scene.noise import Made
 from smash.execution.scene.tabletop import Friction, Tabletop
 from smash.motion.robot import ARM_JOINTS
 
-TIME_STEP = 1 / 960
-"""[s]."""
+TIME_STEP, HOLDING_STEP = 1 / 960, 1 / 1920
+"""Of the simulation, and while the hand holds something [s]. A contact's friction knows speeds and no places: a held
+block goes on along the tangent where the hand goes round, and so drifts outwards by an amount in proportion to this."""
 IMPEDANCE_RATIO = 10.0
-"""Friction is so much stiffer than what keeps bodies apart: held blocks creep less."""
-CONTACT = (2 * TIME_STEP, 1.0)
-"""Time constant [s] and damping ratio of contacts, the stiffest that is stable: MuJoCo's own 0.02 s lets a block slip
-out of the hand."""
+"""Friction is so much stiffer than what keeps bodies apart."""
+CONTACT = (2 * HOLDING_STEP, 1.0)
+"""Time constant [s] and damping ratio of contacts, the stiffest that is stable (with the longer step MuJoCo takes twice
+that one): its own 0.02 s lets a block slip out of the hand."""
 IMPEDANCE = (0.95, 0.99, 0.001, 0.5, 2.0)
 TORSION, ROLLING = 0.005, 0.0001
 """Friction against turning about the normal [m] and against rolling [m]."""
-STIFFNESS = (4500.0, 4500.0, 3500.0, 3500.0, 2000.0, 2000.0, 2000.0)
-"""Of the arm's motors [Nm/rad]; a tenth of it is their damping [Nm s/rad]."""
-DAMPING_SHARE = 0.1
 FINGER_STIFFNESS, FINGER_DAMPING = 5000.0, 100.0
 """Of the fingers' motors [N/m], [N s/m]."""
 FINGER_JOINTS = ("panda_finger_joint1", "panda_finger_joint2")
@@ -129,21 +127,21 @@ def _dress_robot(spec: Any, friction: Friction) -> None:
         if joint.name in FINGER_JOINTS:
             # What the URDF calls effort would clamp the fingers' force below that of their motors.
             joint.actfrcrange = [-FINGER_FORCE, FINGER_FORCE]
-    for name, stiffness, force in zip(ARM_JOINTS, STIFFNESS, ARM_FORCE, strict=True):
-        _add_motor(spec, name, stiffness, DAMPING_SHARE * stiffness, force)
+    for name, force in zip(ARM_JOINTS, ARM_FORCE, strict=True):
+        _add_motor(spec, name, force).set_to_motor()
     for name in FINGER_JOINTS:
-        _add_motor(spec, name, FINGER_STIFFNESS, FINGER_DAMPING, FINGER_FORCE)
+        _add_motor(spec, name, FINGER_FORCE).set_to_position(kp=FINGER_STIFFNESS, kv=FINGER_DAMPING)
     # The fingers move as one: apart, they drift sideways together with the block that they squeeze.
     for tie in spec.equalities:
         tie.solref = CONTACT
         tie.solimp = IMPEDANCE
 
 
-def _add_motor(spec: Any, joint: str, stiffness: float, damping: float, force: float) -> None:
+def _add_motor(spec: Any, joint: str, force: float) -> Any:
     motor = spec.add_actuator(name=joint, target=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT)
-    motor.set_to_position(kp=stiffness, kv=damping)
     motor.forcerange = [-force, force]
     motor.forcelimited = True
+    return motor
 
 
 def _free_body(spec: Any, name: str, pose: BlockPose) -> Any:

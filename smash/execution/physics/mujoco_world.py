@@ -1,4 +1,9 @@
-"""MuJoCo: the world in a model and data of its own."""
+"""MuJoCo: the world in a model and data of its own.
+
+The arm is driven as a real one is, by torques: those that its inertia needs for the acceleration that is wanted, and
+what corrects place and speed, each motor within its limit. Motors that are springs with dampers do as well for the arm,
+but not for what it holds: MuJoCo damps them after it has solved the contacts, and a held block creeps by millimetres.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +20,12 @@ from smash.execution.scene.block_pose import BlockPose
 from smash.motion.robot import ARM_JOINTS
 from smash.problem.errors import Unsupported
 
-STEPS = round(STEP / models.TIME_STEP)
-"""Steps of the simulation in one of ours."""
+STEPS, HOLDING_STEPS = round(STEP / models.TIME_STEP), round(STEP / models.HOLDING_STEP)
+"""Steps of the simulation in one of ours, and while the hand holds something."""
+HELD = 0.002
+"""Fingers that are kept this far from where they are sent hold something [m]."""
+BANDWIDTH = 100.0
+"""Errors of the arm's place and speed fade as fast as this, without swinging [rad/s]."""
 
 
 class MujocoWorld(World):
@@ -38,8 +47,8 @@ class MujocoWorld(World):
         self._fingers = np.array([model.joint(name).qposadr[0] for name in models.FINGER_JOINTS])
         self._motors = np.array([model.actuator(name).id for name in ARM_JOINTS])
         self._finger_motors = np.array([model.actuator(name).id for name in models.FINGER_JOINTS])
-        # A motor's damping pulls against the speed that is wanted too: that much is added to where it is sent.
-        self._lead = models.DAMPING_SHARE
+        self._wanted_position, self._wanted_velocity, self._last_velocity = self._target, np.zeros(7), np.zeros(7)
+        self._acceleration, self._force = np.zeros(model.nv), np.zeros(model.nv)
         self._blocks = {name: model.body(models.block_body(name)).id for name in blocks}
         self._carriers = {name: model.body(models.carrier_body(name)).id for name in carriers}
         self._links = np.array([model.body(name).id for name in models.LINKS])
@@ -59,13 +68,30 @@ class MujocoWorld(World):
         """Give nothing back: what is held goes with the object."""
 
     def _advance(self) -> None:
-        step = FINGER_SPEED * STEP
+        data, step = self.data, FINGER_SPEED * STEP
         self._finger_target += min(step, max(-step, self.opening - self._finger_target))
-        self.data.ctrl[self._finger_motors] = self._finger_target
-        mujoco.mj_step(self.model, self.data, STEPS)
+        data.ctrl[self._finger_motors] = self._finger_target
+        data.ctrl[self._motors] = self._torques()
+        holds = (data.qpos[self._fingers] - self._finger_target).min() > HELD
+        steps = HOLDING_STEPS if holds else STEPS
+        self.model.opt.timestep = STEP / steps
+        mujoco.mj_step(self.model, data, steps)
+
+    def _torques(self) -> NDArray[np.float64]:
+        """What the arm's motors shall turn with for the next `STEP` [Nm], shape (7,)."""
+        data, velocity = self.data, self._wanted_velocity
+        acceleration = (velocity - self._last_velocity) / STEP
+        self._last_velocity = velocity
+        # Where the arm should be now: the set-point is for the end of the step, its speed for the middle.
+        behind = self._wanted_position - STEP * velocity - data.qpos[self._arm]
+        slower = velocity - STEP / 2 * acceleration - data.qvel[self._arm]
+        self._acceleration[self._arm] = acceleration + BANDWIDTH**2 * behind + 2 * BANDWIDTH * slower
+        mujoco.mj_mulM(self.model, data, self._force, self._acceleration)
+        rest = data.qfrc_bias[self._arm] - data.qfrc_gravcomp[self._arm]
+        return np.asarray(self._force[self._arm] + rest)
 
     def _send(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> None:
-        self.data.ctrl[self._motors] = position + self._lead * velocity
+        self._wanted_position, self._wanted_velocity = position, velocity
 
     def _send_fingers(self) -> None:
         """Nothing to do: each step takes the fingers' motors on towards `opening`."""
