@@ -7,7 +7,7 @@ SCENES := friction-0.10 friction-0.30 friction-0.40 friction-0.50
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help install install-all clean test test-slow test-timing lint ci suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full friction topple-map scoop reproduce reproduce-full results physics
+.PHONY: help install install-all lock lock-tool licences clean test test-slow test-timing lint ci suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full friction topple-map scoop reproduce reproduce-full results physics
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -24,6 +24,15 @@ install: needs-planning ## set up .venv for planning
 install-all: needs-all-dev ## set up .venv with all that its Python can have, and the tools of developers
 	@$(BIN)/python -c 'import pybullet' 2>/dev/null || echo 'smash: execution is left out: PyBullet has no wheels for this Python (3.11 has them)'
 	@echo 'smash: ready. $(BIN)/smash plan examples/figure1.json (or first: source $(BIN)/activate)'
+
+lock: ## make requirements.lock again, after a change of pyproject.toml (LOCK=--upgrade takes the newest versions)
+	.ci/lock $(LOCK)
+
+licences: needs-all-dev lock-tool ## make the table of docs/licences.md again, after `make lock`
+	$(BIN)/python .ci/licences.py
+
+lock-tool:
+	@.ci/lock --tool
 
 clean: ## remove what was set up, compiled and built; runs/ stays
 	rm -rf $(VENV) .venvs build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
