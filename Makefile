@@ -7,7 +7,7 @@ SCENES := friction-0.10 friction-0.30 friction-0.40 friction-0.50
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help install install-all docs clean test test-slow test-timing lint ci suites ablation ablation-full bench scaling proofs compare compare-full best-known tables tables-full friction robustness robustness-full paces paces-full topple-map scoop reproduce reproduce-full results physics
+.PHONY: $(shell sed -nE 's/^([a-z][a-z-]*):.*/\1/p' $(firstword $(MAKEFILE_LIST)))
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -28,6 +28,15 @@ install-all: needs-all-dev ## set up .venv with all that its Python can have, an
 docs: needs-analysis-docs ## build the documentation as a site that is read offline: site/index.html (half a minute)
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
 	@echo 'smash: open site/index.html'
+
+lock: ## make requirements.lock again, after a change of pyproject.toml (LOCK=--upgrade takes the newest versions)
+	.ci/lock $(LOCK)
+
+licences: needs-all-dev lock-tool ## make the table of docs/licences.md again, after `make lock`
+	$(BIN)/python .ci/licences.py
+
+lock-tool:
+	@.ci/lock --tool
 
 clean: ## remove what was set up, compiled and built; runs/ stays
 	rm -rf $(VENV) .venvs build dist site .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -94,15 +94,28 @@ class Installed:
         return self.expect("-m", "smash", *words, code=code)
 
     def install(self, wheel: Path, extras: str) -> None:
-        """Install the wheel with extras, and compare what the environment takes on disk with `LARGEST`.
+        """Install the wheel and its part of requirements.lock, and compare what it takes on disk with `LARGEST`.
 
         Raises:
-            Failed: where pip fails, or it takes more.
+            Failed: where pip fails, the lock lacks something of what the wheel asks for, or it takes more.
         """
+        names = [name for name in extras.strip("[]").split(",") if name]
+        locked = subprocess.run(
+            [sys.executable, str(ROOT / ".ci" / "locked.py"), *names], stdout=subprocess.PIPE, check=True
+        )
+        packages = self.folder / "packages.txt"
+        packages.write_bytes(locked.stdout)
         pip = ("-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input")
-        ended = self.python(*pip, "-c", str(ROOT / "constraints.txt"), f"smash-testbed{extras} @ {wheel.as_uri()}")
-        if ended.returncode:
-            raise Failed(f"pip install smash-testbed{extras}: {ended.stderr}")
+        wanted = f"smash-testbed{extras} @ {wheel.as_uri()}"
+        for words in (
+            (*pip, "--require-hashes", "-r", str(packages)),
+            (*pip, "--no-deps", "--force-reinstall", str(wheel)),
+            (*pip, "--no-index", wanted),
+            ("-m", "pip", "check"),
+        ):
+            ended = self.python(*words)
+            if ended.returncode:
+                raise Failed(f"{' '.join(words)}: {ended.stdout}{ended.stderr}")
         size = disk_use(self.directory)
         print(f"  smash-testbed{extras}: {size} MB on disk", flush=True)
         if size > LARGEST[extras]:

@@ -1,11 +1,12 @@
 """What is installed: names, types and data are the same in the tree, in an editable install and from the wheel."""
 
+import importlib
 import json
+import re
 import subprocess
 import sys
 import sysconfig
 import tomllib
-from itertools import chain
 from pathlib import Path
 from zipfile import ZipFile
 
@@ -98,11 +99,54 @@ def test_an_editable_install_reads_the_tree(tmp_path):
     assert found["changes the list"]
 
 
-def test_every_dependency_is_pinned_once():
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    lines = [line for line in (ROOT / "constraints.txt").read_text().splitlines() if not line.startswith("#")]
-    pins = [line.split("==")[0].lower().replace("_", "-") for line in lines]
-    asked = [*project["dependencies"], *chain.from_iterable(project["optional-dependencies"].values())]
-    names = {word.split(">=")[0].lower().replace("_", "-") for word in asked if not word.startswith("smash-testbed[")}
-    assert names <= set(pins)
-    assert len(pins) == len(set(pins))
+@pytest.fixture
+def locked(monkeypatch):
+    """The script that hands out parts of the lock."""
+    monkeypatch.syspath_prepend(str(ROOT / ".ci"))
+    return importlib.import_module("locked")
+
+
+@pytest.fixture
+def project():
+    return tomllib.loads((ROOT / "pyproject.toml").read_text())
+
+
+def test_the_lock_holds_every_dependency_its_builders_and_hashes_of_all(locked, project):
+    entries = locked.entries()
+    extras = [*project["project"]["optional-dependencies"], *project["dependency-groups"]]
+    wanted = locked.asked(project, extras) | {locked.plain(word) for word in project["build-system"]["requires"]}
+    assert wanted <= set(entries)
+    assert all("==" in text.splitlines()[0] and "--hash=sha256:" in text for text, _ in entries.values())
+
+
+def test_the_lock_names_no_host_and_no_path(locked):
+    text = locked.LOCK.read_text()
+    assert not re.findall(r"\w+://|index-url|find-links|@ file|(?<![\w.])/\w+", text)
+
+
+def test_an_environment_gets_what_its_extras_reach_and_no_more(locked, project):
+    entries = locked.entries()
+
+    def names(*asked):
+        return set(locked.reached(locked.asked(project, list(asked)), entries))
+
+    assert {"click", "numpy", "llvmlite"} <= names()
+    assert not {"pandas", "matplotlib", "hatchling", "uv"} & names()
+    assert {"pandas", "matplotlib", "kiwisolver", "numpy"} <= names("analysis")
+    assert names("parquet") > names("analysis")
+    assert {"hatchling", "editables", "setuptools", "wheel"} <= names("build")
+    assert "click" not in names("build")
+    assert names("all", "dev", "build", "lock") == set(entries)
+
+
+def test_the_page_of_licences_has_every_package_of_the_lock(locked):
+    rows = re.findall(
+        r"^\| ([a-z0-9-]+) \| (\S+) \| ([^|]+) \| ([^|]+) \|$", (ROOT / "docs/licences.md").read_text(), re.M
+    )
+    shown = {name: version for name, version, said, _ in rows[1:] if said.strip()}
+    on_linux = {
+        name: re.split(r"==|\s", text)[1]
+        for name, (text, _) in locked.entries().items()
+        if "== 'win32'" not in text.splitlines()[0]
+    }
+    assert shown == on_linux

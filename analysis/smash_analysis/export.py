@@ -43,7 +43,8 @@ def tidy_runs(records: list[RunRecord]) -> pd.DataFrame:
 
     The columns are the same whatever the records hold.
     """
-    flat = pd.DataFrame([_flat(record) for record in records])
+    texts: dict[int, str] = {}
+    flat = pd.DataFrame([_flat(record, texts) for record in records])
     not_plain = (*FLATTENED, *AS_JSON, *IN_OWN_TABLES, "load_average")
     table = runs_table(records).drop(columns=list(not_plain), errors="ignore")
     table = pd.concat([table, flat.set_index(table.index)], axis="columns")
@@ -58,15 +59,18 @@ def _mixed(column: pd.Series[Any]) -> bool:
     return column.dtype == object and len(kinds) > 1
 
 
-def _flat(record: RunRecord) -> dict[str, Any]:
-    """Return the columns made of a record's nested fields."""
+def _flat(record: RunRecord, texts: dict[int, str]) -> dict[str, Any]:
+    """Return the columns made of a record's nested fields; `texts` keeps those of parts that several records share."""
     columns: dict[str, Any] = {}
     for name, parts in FLATTENED.items():
         inner = getattr(record, name)
         columns |= {f"{name}_{part}": getattr(inner, part, None) for part in parts}
     before, after = record.load_average
     columns |= {"load_before": before, "load_after": after}
-    return columns | {name: json.dumps(getattr(record, name)) for name in AS_JSON}
+    for name in AS_JSON:
+        value = getattr(record, name)
+        columns[name] = texts.get(id(value)) or texts.setdefault(id(value), json.dumps(value))
+    return columns
 
 
 def export(results: Path, out: Path) -> list[tuple[Path, int]]:

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from smash.problem.extras import TABLES, require
+from smash.problem.words import one_line
 
 
 @click.command("report")
@@ -26,5 +27,5 @@ def command(results: Path, out: Path | None) -> None:
     require("smash report", *TABLES)
     from smash_analysis.report import page
 
-    made = page.make(results, out or results / "report", lambda line: click.echo(line, err=True))
+    made = page.make(results, out or results / "report", lambda line: click.echo(one_line(line), err=True))
     click.echo(f"{made} ({made.stat().st_size / 1e6:.1f} MB), parts in {made.parent / 'parts'}")

@@ -24,6 +24,7 @@ from smash.records.files import RUNS
 from smash.records.reading import NoRecords, finished
 from smash.records.record import shown
 from smash.records.runs import RunRecord, instance_hash
+from smash.records.sharing import kept_objects
 from smash.records.variants import variant_options
 
 
@@ -108,17 +109,18 @@ def judge(records: Iterable[RunRecord]) -> list[Judged]:
     """Have the law judge runs; equal instances are read once."""
     read: dict[tuple[str, PlanOptions], list[tuple[dict[str, Any], Problem | str]]] = {}
     judged = []
-    for record in records:
-        options = PlanOptions(record.topple, record.max_topple, without=tuple(record.without))
-        known = read.setdefault((record.instance_hash, options), [])
-        problem = next((made for document, made in known if document == record.instance_document), None)
-        if problem is None:
-            problem = _problem(record, options)
-            known.append((record.instance_document, problem))
-        if isinstance(problem, str):
-            judged.append(Judged(record, None, problem))
-        else:
-            judged.append(Judged(record, problem, _mismatch(record, problem) or _shortcoming(record, problem)))
+    with kept_objects():
+        for record in records:
+            options = PlanOptions(record.topple, record.max_topple, without=tuple(record.without))
+            known = read.setdefault((record.instance_hash, options), [])
+            problem = next((made for document, made in known if document == record.instance_document), None)
+            if problem is None:
+                problem = _problem(record, options)
+                known.append((record.instance_document, problem))
+            if isinstance(problem, str):
+                judged.append(Judged(record, None, problem))
+            else:
+                judged.append(Judged(record, problem, _mismatch(record, problem) or _shortcoming(record, problem)))
     return judged
 
 

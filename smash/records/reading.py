@@ -13,6 +13,7 @@ from smash.problem.errors import MalformedFile
 from smash.problem.files.documents import read_bytes
 from smash.records.files import R, RecordFile
 from smash.records.record import decoded
+from smash.records.sharing import Sharing, kept_objects
 
 NO_JSON = "no JSON"
 
@@ -86,16 +87,18 @@ def read(results: Path, kind: RecordFile[R]) -> Reading[R]:
     path = kind.path(results)
     content = read_bytes(path)
     texts = content.removesuffix(b"\n").split(b"\n") if content else []
+    shared: Sharing[R] = Sharing()
     lines, damaged = [], []
-    for number, text in enumerate(texts, start=1):
-        try:
-            lines.append(Line(number, decoded(text, kind.record)))
-        except msgspec.ValidationError as error:
-            damaged.append(Damaged(number, f"no {kind.format} object: {error}", number == len(texts)))
-        except RecursionError:
-            damaged.append(Damaged(number, f"{NO_JSON}: nested too deeply", number == len(texts)))
-        except ValueError as error:
-            damaged.append(Damaged(number, f"{NO_JSON}: {error}", number == len(texts)))
+    with kept_objects():
+        for number, text in enumerate(texts, start=1):
+            try:
+                lines.append(Line(number, shared(decoded(text, kind.record))))
+            except msgspec.ValidationError as error:
+                damaged.append(Damaged(number, f"no {kind.format} object: {error}", number == len(texts)))
+            except RecursionError:
+                damaged.append(Damaged(number, f"{NO_JSON}: nested too deeply", number == len(texts)))
+            except ValueError as error:
+                damaged.append(Damaged(number, f"{NO_JSON}: {error}", number == len(texts)))
     return Reading(path, kind.one, lines, damaged, content.endswith(b"\n") or not content)
 
 

@@ -87,12 +87,12 @@ def make(results: Path, out: Path, said: Callable[[str], None] = lambda _: None)
     """
     parts, slugs, behind = out / "parts", Slugs(), Behind()
     sections, files, shown = [], [], []
-    for source in find_sources(results, out):
+    for source in find_sources(results, out, said):
         said(f"{source.name}: {len(source.runs)} runs, {len(source.episodes)} episodes, {len(source.trials)} topples")
         made = section(source)
         slug = slugs(made.name)
         names = [slugs(f"{slug}-{block.name}") for block in made.blocks]
-        files.append(write_parts(made, slug, names, parts))
+        files.append(write_parts(made, slug, names, parts, said))
         sections.append(made)
         shown.append(_shown(made, slug, files[-1], behind, slugs, out))
     (parts / "report.md").write_text(report_markdown(sections, files, parts), encoding="utf-8")

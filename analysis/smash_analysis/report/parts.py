@@ -36,7 +36,9 @@ class Slugs:
         return slug
 
 
-def write_parts(section: Section, slug: str, slugs: list[str], out: Path) -> dict[str, list[Path]]:
+def write_parts(
+    section: Section, slug: str, slugs: list[str], out: Path, said: Callable[[str], None] = lambda _: None
+) -> dict[str, list[Path]]:
     """Write the files of a section's blocks to `out/slug`; return them by the block's slug.
 
     Args:
@@ -44,10 +46,15 @@ def write_parts(section: Section, slug: str, slugs: list[str], out: Path) -> dic
         slug: of the section.
         slugs: of its blocks, in their order.
         out: directory of all parts.
+        said: hears which part is written.
     """
     directory = out / slug
     directory.mkdir(parents=True, exist_ok=True)
-    return {name: _write(block, directory, name, slug) for block, name in zip(section.blocks, slugs, strict=True)}
+    files = {}
+    for number, (block, name) in enumerate(zip(section.blocks, slugs, strict=True), start=1):
+        said(f"{section.name}: part {number} of {len(slugs)}: {block.title}")
+        files[name] = _write(block, directory, name, slug)
+    return files
 
 
 def _write(block: Block, directory: Path, name: str, section: str) -> list[Path]:

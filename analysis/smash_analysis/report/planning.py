@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pandas as pd
 
 from smash_analysis.charts.curves import anytime_chart, coverage_chart, gap_chart
@@ -216,20 +214,21 @@ class Planning:
         failures = failure_table(self.runs)
         clean = [str(label) for label in dict.fromkeys(self.runs["label"]) if label not in set(failures["planner"])]
         note = f"No failure: {', '.join(clean)}." if clean else "Every planner has some."
-        behind = [self._behind(row) for row in failures.to_dict("records")]
+        numbers, columns = self._by_failure(), [*(column for _, column in FAILURE_COLUMNS), "reason"]
+        behind = [numbers[tuple(row[column] for column in columns)] for row in failures.to_dict("records")]
         blocks: list[Block] = [
             TableBlock("failures", "Failures and their reasons", failures, note, entries=behind, store="runs"),
             TableBlock("outcomes", "How the runs ended", outcome_table(self.runs), folded=True),
         ]
         return blocks
 
-    def _behind(self, row: dict[Any, Any]) -> list[int]:
-        reason = "" if row["reason"] == "no plan by the budget" else row["reason"]
-        return [
-            number
-            for number, record in zip(self.kept, self.final, strict=True)
-            if all(getattr(record, mine) == row[name] for mine, name in FAILURE_COLUMNS) and record.reason == reason
-        ]
+    def _by_failure(self) -> dict[tuple[str, ...], list[int]]:
+        """Return the numbers of the runs that each row of `failure_table` may stand for, by what the row says."""
+        found: dict[tuple[str, ...], list[int]] = {}
+        for number, record in zip(self.kept, self.final, strict=True):
+            said = *(getattr(record, name) for name, _ in FAILURE_COLUMNS), record.reason or "no plan by the budget"
+            found.setdefault(said, []).append(number)
+        return found
 
     def _instances(self) -> CardsBlock:
         return cards(self.source, self.runs)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -65,8 +66,13 @@ class Source:
         return [(file.name, hashlib.sha256(file.read_bytes()).hexdigest()) for file in files if file.is_file()]
 
 
-def find_sources(results: Path, out: Path) -> list[Source]:
+def find_sources(results: Path, out: Path, said: Callable[[str], None] = lambda _: None) -> list[Source]:
     """Return the sources at and below `results`, by name; nothing in `out` is read.
+
+    Args:
+        results: the directory.
+        out: of the report.
+        said: hears what is read.
 
     Raises:
         NoRecords: where there is no record at all.
@@ -74,7 +80,7 @@ def find_sources(results: Path, out: Path) -> list[Source]:
     """
     if not results.is_dir():
         raise NoRecords(str(results), "no such directory")
-    sources = [_read(directory, results) for directory in _directories(results, out.resolve())]
+    sources = [_read(directory, results, said) for directory in _directories(results, out.resolve())]
     if all(source.empty for source in sources):
         problems = [problem for source in sources for problem in source.problems]
         if problems:
@@ -96,8 +102,10 @@ def _directories(results: Path, out: Path) -> list[Path]:
     return found
 
 
-def _read(directory: Path, results: Path) -> Source:
+def _read(directory: Path, results: Path, said: Callable[[str], None]) -> Source:
     name = results.resolve().name if directory == results else directory.relative_to(results).as_posix()
+    size = sum(file.stat().st_size for file in map(directory.joinpath, FILES) if file.is_file())
+    said(f"reading {name} ({size / 1e6:.1f} MB)")
     source = Source(name.encode(errors="backslashreplace").decode(), directory)
     if (runs := _reading(source, RUNS)) is not None:
         found = believed(runs.records)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from smash.records.runs import RunRecord
@@ -54,10 +56,18 @@ def incumbents_table(records: Sequence[RunRecord]) -> pd.DataFrame:
 
 def steps_table(records: Sequence[RunRecord]) -> pd.DataFrame:
     """Return one row an action of the best plan: run key, step (from 1), the columns of `tables.actions`."""
-    rows = [
-        {"key": record.key, "step": step, **named(action)}
-        for record in records
-        for step, action in enumerate(record.actions or [], start=1)
-    ]
-    types = {"key": "string", "step": "int64", **ACTION_COLUMNS}
-    return pd.DataFrame(rows, columns=list(types)).astype(types)
+    numbers: dict[tuple[Any, ...], int] = {}  # of each different action; 1 is not True
+    different: list[dict[str, str | int | None]] = []
+    which: list[int] = []
+    for record in records:
+        for action in record.actions or []:
+            number = numbers.setdefault((*action, *map(type, action)), len(different))
+            if number == len(different):
+                different.append(named(action))
+            which.append(number)
+    lengths = [len(record.actions or []) for record in records]
+    keys = pd.Series([record.key for record in records], dtype="string")
+    told = pd.DataFrame(different, columns=list(ACTION_COLUMNS)).astype(dict(ACTION_COLUMNS)).take(which)
+    told.insert(0, "key", keys.repeat(lengths).set_axis(told.index))
+    told.insert(1, "step", np.concatenate([np.arange(1, length + 1) for length in (*lengths, 0)]).astype("int64"))
+    return told.reset_index(drop=True)

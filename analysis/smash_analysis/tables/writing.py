@@ -84,10 +84,12 @@ def write_csv(table: pd.DataFrame, file: Path) -> None:
     Raises:
         OSError: where it cannot be written.
     """
-    plain = table.copy()
+    plain = table.copy(deep=False)
     for name in plain.columns:
         if not pd.api.types.is_numeric_dtype(plain[name]) and not pd.api.types.is_datetime64_any_dtype(plain[name]):
-            plain[name] = plain[name].map(_no_formula)
+            formulas = {text: f"'{text}" for text in plain[name].unique() if _no_formula(text) is not text}
+            if formulas:
+                plain[name] = plain[name].map(lambda text, formulas=formulas: formulas.get(text, text))
     plain.rename(columns=_no_formula).to_csv(file, index=False)
 
 
