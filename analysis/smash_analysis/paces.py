@@ -12,6 +12,7 @@ import pandas as pd
 
 from smash.records.files import EPISODES
 from smash_analysis import command
+from smash_analysis.execution_sweeps import good_everywhere
 from smash_analysis.execution_tables import failure_table, paired_table, told_episodes
 from smash_analysis.tables.believed import records_of
 from smash_analysis.tables.paper_tables import PAPER
@@ -90,13 +91,15 @@ def make(results: Path, out: Path) -> list[Path]:
     """
     episodes = read_paces(results)
     out.mkdir(parents=True, exist_ok=True)
-    saved, failed = pace_table(episodes), failure_table(episodes)
+    shared = episodes[good_everywhere(episodes.assign(scene=episodes[PACE]))]
+    saved, failed = pace_table(shared), failure_table(episodes)
     parts = [
         "# Equal paces\n",
-        f"{len(episodes)} episodes. {LEGEND}\n",
+        f"{len(episodes)} episodes, {len(shared)} of them of plans that succeed at every pace: these are compared. "
+        f"{LEGEND}\n",
         markdown(saved) if len(saved) else "No pairs.\n",
         "## Seconds an action\n",
-        markdown(action_table(episodes)),
+        markdown(action_table(shared)),
         "## Failures\n",
         markdown(failed) if len(failed) else "None.\n",
     ]
