@@ -103,7 +103,7 @@ friction: needs-analysis-execution physics ## the same plans under other frictio
 NOISES := pose=1mm pose=3mm pose=5mm yaw=3deg yaw=6deg camera=2mm camera=4mm placement=2mm placement=4mm friction=10% friction=25% mass=25% mass=50% size=0.5mm size=1mm
 MORE_NOISES := pose=8mm pose=12mm yaw=10deg camera=6mm placement=6mm friction=40% size=2mm
 
-robustness: needs-analysis-execution physics ## the same plans under noise of each kind: success and time, table and curves (about 20 minutes on 2 cores; it can be resumed)
+robustness: needs-analysis-execution physics ## the same plans under noise of each kind: success and time, table and curves (about 10 minutes on 2 quiet cores; it can be resumed)
 	$(BIN)/python -m smash sweep experiments/robustness.toml --out runs/robustness
 	$(BIN)/python -m smash episodes runs/robustness --jobs 2
 	$(BIN)/python -m smash episodes runs/robustness --jobs 2 $(addprefix --noise ,$(NOISES))
@@ -116,7 +116,7 @@ robustness-full: needs-analysis-execution physics ## the same on 20 instances of
 	$(BIN)/python -m smash episodes runs/robustness-full --seeds 3 --jobs 2 $(addprefix --noise ,$(NOISES) $(MORE_NOISES))
 	$(BIN)/python -m smash_analysis.robustness runs/robustness-full
 
-paces: needs-analysis-execution physics ## what topple saves at 0.1 and 0.25 of the arm's limits, as MoveIt moves it, beside ours (about 20 minutes on 2 cores; it can be resumed)
+paces: needs-analysis-execution physics ## what topple saves at 0.1 and 0.25 of the arm's limits, as MoveIt moves it, beside ours (about 10 minutes on 2 quiet cores; it can be resumed)
 	$(BIN)/python -m smash sweep experiments/paces.toml --out runs/paces
 	$(BIN)/python -m smash episodes runs/paces --jobs 2
 	$(BIN)/python -m smash episodes runs/paces --jobs 2 --pace 0.1 --pace 0.25

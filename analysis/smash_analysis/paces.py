@@ -1,7 +1,7 @@
 """`python -m smash_analysis.paces RESULTS`: what topple saves at other paces of the arm, beside the paper.
 
-RESULTS holds episodes of the same plans at several paces (`smash episodes RESULTS --pace SHARE`). The paper's arm moves
-at MoveIt's default, 0.1 of its limits; percentages are to be compared at one pace.
+RESULTS holds episodes of the same plans at several paces (`smash episodes RESULTS --pace SHARE`). The paper does not
+say its pace: seconds an action tell which of ours is like it, and percentages are to be compared at that one.
 """
 
 from __future__ import annotations
@@ -12,11 +12,14 @@ import pandas as pd
 
 from smash.records.files import EPISODES
 from smash_analysis import command
+from smash_analysis.execution_sweeps import good_everywhere
 from smash_analysis.execution_tables import failure_table, paired_table, told_episodes
 from smash_analysis.tables.believed import records_of
+from smash_analysis.tables.paper_tables import PAPER
 from smash_analysis.tables.writing import SPREADS, markdown
 
 PACE = "pace"
+SECONDS = "seconds an action"
 LEGEND = (
     "Execution time saved by topple, paired by instance, at several paces: shares of the arm's velocity and "
     "acceleration limits that motions use. Pushes have speeds of their own at every pace. MoveIt's default is "
@@ -53,18 +56,31 @@ def pace_table(episodes: pd.DataFrame) -> pd.DataFrame:
 
 
 def action_table(episodes: pd.DataFrame) -> pd.DataFrame:
-    """Return the simulated seconds an action takes at each pace, over successful episodes."""
+    """Return the simulated seconds that an action takes at each pace, of successful episodes, and the paper's.
+
+    Both are sums of times over sums of actions; the paper's of its means, since it prints no others.
+    """
     done = episodes[episodes["success"]]
-    each = (done["execution_seconds"] / done["actions_executed"]).rename("seconds an action")
-    means = each.groupby([done[PACE], done["variant"]]).agg(["mean", "size"])
-    return pd.DataFrame(
-        {
-            PACE: [pace for pace, _ in means.index],
-            "variant": [variant for _, variant in means.index],
-            "seconds an action": means["mean"].map("{:.2f}".format).tolist(),
-            "episodes": means["size"].tolist(),
-        }
+    rows = [
+        {PACE: pace, "variant": variant, SECONDS: _ratio(part), "episodes": str(len(part))}
+        for (pace, variant), part in done.groupby([PACE, "variant"], sort=True)
+    ]
+    variants = sorted(set(done["variant"]) & set(PAPER["multi"]["execution"]))
+    rows += [{PACE: "the paper", "variant": v, SECONDS: f"{_paper_seconds(v):.2f}", "episodes": "–"} for v in variants]
+    return pd.DataFrame(rows)
+
+
+def _ratio(part: pd.DataFrame) -> str:
+    actions = part["actions_executed"].sum()
+    return f"{part['execution_seconds'].sum() / actions:.2f}" if actions else "–"
+
+
+def _paper_seconds(variant: str) -> float:
+    seconds, actions = (
+        sum(float(cell.split()[0]) for table in PAPER.values() for cell in table[metric][variant])
+        for metric in ("execution", "actions")
     )
+    return seconds / actions
 
 
 def make(results: Path, out: Path) -> list[Path]:
@@ -75,13 +91,15 @@ def make(results: Path, out: Path) -> list[Path]:
     """
     episodes = read_paces(results)
     out.mkdir(parents=True, exist_ok=True)
-    saved, failed = pace_table(episodes), failure_table(episodes)
+    shared = episodes[good_everywhere(episodes.assign(scene=episodes[PACE]))]
+    saved, failed = pace_table(shared), failure_table(episodes)
     parts = [
         "# Equal paces\n",
-        f"{len(episodes)} episodes. {LEGEND}\n",
+        f"{len(episodes)} episodes, {len(shared)} of them of plans that succeed at every pace: these are compared. "
+        f"{LEGEND}\n",
         markdown(saved) if len(saved) else "No pairs.\n",
         "## Seconds an action\n",
-        markdown(action_table(episodes)),
+        markdown(action_table(shared)),
         "## Failures\n",
         markdown(failed) if len(failed) else "None.\n",
     ]

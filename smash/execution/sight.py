@@ -98,8 +98,19 @@ class Sight:
 
     def _told(self, known: _Known) -> BlockPose:
         pose = BlockPose(known.position, yaw_rotation(known.turned) @ known.rotation)
-        level = round(float(pose.position[2]) / self._side - 0.5)
+        ground = self._ground(pose.position)
+        level = round((float(pose.position[2]) - ground) / self._side - 0.5)
         if level < 0 or pose.tilt > LARGEST_TILT:
             return pose
-        # What stands upright stands on the table or on other blocks: its height is known.
-        return BlockPose(np.append(pose.position[:2], (level + 0.5) * self._side), pose.rotation)
+        # What stands upright stands on the table, on a tray or on other blocks: its height is known.
+        return BlockPose(np.append(pose.position[:2], ground + (level + 0.5) * self._side), pose.rotation)
+
+    def _ground(self, place: Vector) -> float:
+        """The height of what the lowest block at a place stands on [m]: the board of a tray, or the table."""
+        tray = self._world.tabletop.tray
+        for pose in self._world.carriers().values():
+            assert tray is not None
+            across = np.abs(pose.rotation.T @ (place - pose.position))
+            if np.all(across[:2] < np.array(tray.size) / 2):
+                return float(pose.position[2]) + tray.board / 2
+        return 0.0

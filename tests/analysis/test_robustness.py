@@ -54,8 +54,13 @@ def test_what_topple_saves_is_told_by_pace(tmp_path):
         for speed, factor in (((0.5, 0.25), 1.0), ((0.1, 0.1), 3.0))
         for variant, seconds in (("topple", 20.0), ("no-topple", 30.0))
     ]
-    (text,) = paces.make(written(tmp_path, rows), tmp_path / "out")
+    alone = [("b", "topple", 1.0, True, {"speed": (0.5, 0.25)})]
+    (text,) = paces.make(written(tmp_path, [*rows, *alone]), tmp_path / "out")
+    assert "5 episodes, 4 of them of plans that succeed at every pace" in text.read_text()
     table = paces.pace_table(paces.read_paces(tmp_path)).set_index("pace")
     assert table["without [s]"].to_dict() == {"0.1, 0.1": "90.0", "0.5, 0.25": "30.0"}
     assert table["saved [%]"].tolist() == ["33", "33"]
-    assert "15.00" in text.read_text()
+    seconds = paces.action_table(paces.read_paces(tmp_path)).set_index(["pace", "variant"])["seconds an action"]
+    assert seconds["0.1, 0.1", "topple"] == "15.00"
+    assert (seconds["the paper", "topple"], seconds["the paper", "no-topple"]) == ("5.36", "5.00")
+    assert "5.36" in text.read_text()

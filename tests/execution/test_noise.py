@@ -20,6 +20,7 @@ from smash.problem import MalformedFile, Pick, Place, PositionsGoal, SmashError,
 from smash.records.episodes import Episode
 from smash.records.record import decoded
 from tests.execution.episodes import buried_target, plan_of, swapped_pair
+from tests.execution.scooping import scoop_scene
 
 
 def run(instance, plan, noise, **options):
@@ -108,10 +109,13 @@ class StillWorld:
     """Blocks that stand where they are told, and time that passes when it is told."""
 
     def __init__(self, **poses):
-        self.tabletop, self.time, self.shown = default_scene(), 0.0, poses
+        self.tabletop, self.time, self.shown, self.trays = scoop_scene(), 0.0, poses, {}
 
     def poses(self):
         return dict(self.shown)
+
+    def carriers(self):
+        return self.trays
 
 
 def test_a_block_that_lies_still_is_known_better_with_each_look_and_one_that_moves_anew():
@@ -131,6 +135,17 @@ def test_a_block_that_lies_still_is_known_better_with_each_look_and_one_that_mov
     world.time += 0.1
     assert sight.blocks()["a"].distance(0.5, 0.0) < 0.025
     assert sight.spread("a") > 0.005
+
+
+def test_a_block_on_a_tray_is_seen_as_high_as_the_tray_is():
+    world = StillWorld()
+    tray = world.tabletop.tray
+    world.trays = {"t": tray.at(0.4, 0.1, 0.5)}
+    world.shown = {"a": tray.cell(world.trays["t"], 0), "b": standing(0.2, -0.3, 0.0675, 0.0)}
+    sight = Sight(world, Chance(scene_of(noise="pose=4mm"), buried_target(), 1))
+    assert [sight.blocks()[block].position[2] for block in "ab"] == pytest.approx(
+        [world.shown[block].position[2] for block in "ab"]
+    )
 
 
 def test_a_camera_that_is_off_is_off_in_the_same_way_at_every_look():
