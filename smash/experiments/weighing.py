@@ -20,7 +20,7 @@ from smash.forecast.model import OutcomeModel, default_model
 from smash.forecast.robust import least_risk
 from smash.forecast.search import Candidate, faster, neighbours
 from smash.planners.protocol import ACTIONS, OnIncumbent
-from smash.problem.extras import install_line, is_there
+from smash.problem.extras import MissingExtra, is_there
 from smash.problem.model import TABLE, Action, Pick
 from smash.problem.plan import Incumbent, Plan
 from smash.problem.problem import Problem
@@ -29,7 +29,7 @@ from smash.problem.rules import Verdict
 if TYPE_CHECKING:
     from smash.execution.rehearsal import Rehearsal
 
-MOTIONS = ("pinocchio", "coal", "toppra", "ompl")
+MOTIONS = ("pybullet_data", "pinocchio", "coal", "toppra", "ompl")
 """What a rehearsal plans motions with."""
 FIRST, SECOND, ANNEALED = 0.3, 0.5, 0.6
 """When the planner's plan, its plan without topple and the annealing have to be there, as shares of the budget."""
@@ -184,7 +184,7 @@ class _Weighing:
     def _why_not_rehearsed(self) -> str:
         missing = next((module for module in MOTIONS if not is_there(module)), None)
         if missing is not None:
-            return f"no motion was rehearsed, which needs {missing}: {install_line(missing)}"
+            return str(MissingExtra("a rehearsal of its motions", missing))
         if self.rehearsal is None:
             return "no motion was rehearsed, which takes the built-in scene and an empty hand"
         return "the budget did not suffice to rehearse motions"
