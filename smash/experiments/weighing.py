@@ -282,7 +282,8 @@ class _Weighing:
         )
         return replace(
             first,
-            outcome="optimal" if proven else "feasible",
+            outcome="interrupted" if self.stopped() else "optimal" if proven else "feasible",
+            reason="stopped from outside" if self.stopped() else "",
             plan=plan,
             verdict=Verdict(True, cost=cost),
             wall_seconds=taken,

@@ -78,6 +78,12 @@ def test_a_run_that_failed_is_reported_as_it_is(instance):
     assert weighed(job(instance), Asked("crashed"), ELSEWHERE).outcome == "crashed"
 
 
+def test_a_run_that_is_stopped_keeps_what_it_has(instance):
+    report = weighed(job(instance), Asked(), ELSEWHERE, lambda: True)
+    assert report.outcome == "interrupted"
+    assert check_plan(instance, report.plan).accepted
+
+
 def test_what_the_model_does_not_know_is_refused_before_the_planner_is_asked():
     wide = door.make_instance(start={f"s{n}": [f"b{n}"] for n in range(6)}, goal={"s1": [f"b{n}" for n in range(6)]})
     asked = Asked()
