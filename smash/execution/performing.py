@@ -11,7 +11,7 @@ from math import hypot, inf
 
 import numpy as np
 
-from smash.execution.actions.arm_motions import OPEN_SECONDS, OPENINGS, Grip, Segment
+from smash.execution.actions.arm_motions import OPEN_SECONDS, OPENINGS, PAUSE, Grip, Segment
 from smash.execution.actions.grasps import CENTRED
 from smash.execution.actions.pick_and_place import Approach
 from smash.execution.actions.registry import MOTIONS
@@ -46,8 +46,6 @@ SCENE_ALLOWANCE = 0.006
 """Motions planned offline may come this much closer to revealed blocks than planned [m]."""
 MOST_MOTIONS = 5
 """An aggregating action is not repeated more often than this: what it leaves undone then, the law's state tells."""
-PAUSE = 0.05
-"""Standing still between two motions, for the arm to catch up [s]."""
 
 
 class Performer:
@@ -259,10 +257,3 @@ def follow(world: World, segments: Sequence[Segment]) -> None:
             world.meant = segment.ignored
             world.follow(segment.trajectory, segment.opening)
             world.wait(PAUSE)
-
-
-def duration(segments: Sequence[Segment]) -> float:
-    """How long `follow` takes over planned motions, in simulated time [s]."""
-    return sum(
-        segment.seconds if isinstance(segment, Grip) else segment.trajectory.duration + PAUSE for segment in segments
-    )

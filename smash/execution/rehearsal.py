@@ -11,11 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from smash.execution.actions.arm_motions import ArmMotions
+from smash.execution.actions.arm_motions import PAUSE, ArmMotions, duration
 from smash.execution.actions.grasps import CENTRED, Grasp
 from smash.execution.actions.topple import directions, pushes_needed
 from smash.execution.grounding import Grounder, Task
-from smash.execution.performing import PAUSE, duration
 from smash.execution.scene.block_pose import standing
 from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.start import starting_poses

@@ -6,8 +6,9 @@ fastest of these those whose motions, rehearsed, take the least time. The plan w
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from random import Random
 from threading import Event
 from time import monotonic
 from typing import TYPE_CHECKING
@@ -17,9 +18,9 @@ from smash.experiments.isolation.job import Job, Report
 from smash.forecast.expected import Forecaster
 from smash.forecast.model import OutcomeModel, default_model
 from smash.forecast.robust import least_risk
-from smash.forecast.search import Candidate, faster
+from smash.forecast.search import Candidate, faster, neighbours
 from smash.planners.protocol import ACTIONS, OnIncumbent
-from smash.problem.extras import install_line, is_there
+from smash.problem.extras import MissingExtra, is_there
 from smash.problem.model import TABLE, Action, Pick
 from smash.problem.plan import Incumbent, Plan
 from smash.problem.problem import Problem
@@ -28,15 +29,21 @@ from smash.problem.rules import Verdict
 if TYPE_CHECKING:
     from smash.execution.rehearsal import Rehearsal
 
-MOTIONS = ("pinocchio", "coal", "toppra", "ompl")
+MOTIONS = ("pybullet_data", "pinocchio", "coal", "toppra", "ompl")
 """What a rehearsal plans motions with."""
-FIRST, SECOND, ANNEALED = 0.4, 0.6, 0.7
+FIRST, SECOND, ANNEALED = 0.3, 0.5, 0.6
 """When the planner's plan, its plan without topple and the annealing have to be there, as shares of the budget."""
 SEEDS = (0, 1)
 """Each of the fastest plans is rehearsed with these."""
 FINALISTS = 3
 AN_ACTION = 0.025
 """A rehearsal takes about so long for each action of a plan [s]."""
+CLIMBED = 0.93
+"""When the last neighbour of the best plan has to be rehearsed, as a share of the budget."""
+CLIMBS, TRIES = 2000, 300
+"""Neighbours that are looked at, in all and of one plan."""
+WORTH_A_TRY = 2.0
+"""A neighbour that the forecast holds for so much slower than the best plan is not rehearsed [s]."""
 MODEL_ALONE = "by the outcome model alone"
 ANSWERS = ("optimal", "feasible", "over-budget", "budget-spent")
 """Ends of a run whose plan is weighed."""
@@ -177,7 +184,7 @@ class _Weighing:
     def _why_not_rehearsed(self) -> str:
         missing = next((module for module in MOTIONS if not is_there(module)), None)
         if missing is not None:
-            return f"no motion was rehearsed, which needs {missing}: {install_line(missing)}"
+            return str(MissingExtra("a rehearsal of its motions", missing))
         if self.rehearsal is None:
             return "no motion was rehearsed, which takes the built-in scene and an empty hand"
         return "the budget did not suffice to rehearse motions"
@@ -201,7 +208,8 @@ class _Weighing:
             return round(sum(seen[actions]) / len(seen[actions]), 1), plans[actions].expected.risk
 
         if self.rehearsal is not None:
-            rehearse(plans, SEEDS[0])
+            rehearse(list(plans), SEEDS[0])
+            self._climb(plans, seen, rehearse, mean, self.begun + CLIMBED * self.job.budget)
             for seed in SEEDS[1:]:
                 rehearse(sorted(seen, key=mean)[:FINALISTS], seed)
         if not seen:
@@ -211,6 +219,29 @@ class _Weighing:
         best = plans[min(twice, key=mean)]
         seconds = sum(seen[best.actions]) / len(seen[best.actions])
         return replace(best, expected=replace(best.expected, seconds=seconds)), f"{len(seen)} plans rehearsed"
+
+    def _climb(
+        self,
+        plans: dict[tuple[Action, ...], Candidate],
+        seen: Mapping[tuple[Action, ...], list[float]],
+        rehearse: Callable[[Iterable[tuple[Action, ...]], int], None],
+        mean: Callable[[tuple[Action, ...]], tuple[float, float]],
+        until: float,
+    ) -> None:
+        """Rehearse neighbours of the best plan, and of what is better than it in turn, as long as there is time."""
+        random, left = Random(self.job.settings.seed), CLIMBS
+        while seen and left and monotonic() < until and not self.stopped():
+            best = min(seen, key=mean)
+            most = plans[best].expected.seconds + WORTH_A_TRY
+            for candidate in neighbours(self.forecaster, best, random, TRIES):
+                left -= 1
+                if candidate.actions not in plans and candidate.expected.seconds <= most:
+                    plans[candidate.actions] = candidate
+                    rehearse([candidate.actions], SEEDS[0])
+                if not left or monotonic() > until or self.stopped() or min(seen, key=mean) != best:
+                    break
+            else:
+                return
 
     def _seconds(self, candidate: Candidate, seed: int) -> float:
         """Return what a plan takes in one rehearsal, what it risks included [s]."""
@@ -251,7 +282,8 @@ class _Weighing:
         )
         return replace(
             first,
-            outcome="optimal" if proven else "feasible",
+            outcome="interrupted" if self.stopped() else "optimal" if proven else "feasible",
+            reason="stopped from outside" if self.stopped() else "",
             plan=plan,
             verdict=Verdict(True, cost=cost),
             wall_seconds=taken,

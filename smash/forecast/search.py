@@ -7,6 +7,7 @@ fewer. What the law refuses, or what misses the goal, is no plan; of the others 
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import exp
@@ -17,8 +18,13 @@ from smash.forecast.expected import Expected, Forecaster, Walk
 from smash.problem.actions.topple import Topple
 from smash.problem.model import TABLE, Action, Aggregating, Pick, Place, State
 
-STEPS = 8000
-"""Steps of an annealing from one start."""
+STEPS = 4000
+"""Steps of an annealing."""
+TIMES = 3
+"""Annealings from each start."""
+ALIKE = 3
+"""Of plans that topple the same and begin with the same moves so many are kept: others may do better in motion."""
+BEGINNING = 3
 HOT, COLD = 1.5, 0.05
 """Temperatures at its begin and end [s]."""
 KEPT = 24
@@ -59,14 +65,15 @@ def faster(
         forecaster: says what is expected of a plan.
         starts: legal plans.
         seed: of what is drawn at random: the same seed gives the same plans where time allows all steps.
-        steps: of the annealing from each start.
+        steps: of each annealing.
         until: when to stop, by the monotonic clock [s].
         stopped: whether to stop at once.
     """
     found: dict[tuple[Action, ...], Expected] = {}
-    for number, start in enumerate(starts):
+    tasks = [start for start in starts for _ in range(TIMES)]
+    for number, start in enumerate(tasks):
         now = monotonic()
-        last = None if until is None else now + max(0.0, until - now) / (len(starts) - number)
+        last = None if until is None else now + max(0.0, until - now) / (len(tasks) - number)
         actions = tuple(start)
         found[actions] = forecaster.of(actions)
         annealing = _Annealing(forecaster, actions, Random(f"{seed} {number}"))
@@ -76,14 +83,30 @@ def faster(
             if step % 64 == 0:
                 if stopped() or (last is not None and monotonic() > last):
                     break
-                if len(found) > 20 * KEPT:
+                if len(found) > 40 * KEPT:
                     found = _fastest(found)
     return [Candidate(actions, expected) for actions, expected in _fastest(found).items()]
 
 
 def _fastest(found: dict[tuple[Action, ...], Expected]) -> dict[tuple[Action, ...], Expected]:
     ranked = sorted(found.items(), key=lambda item: (item[1].seconds, len(item[0])))
-    return dict(ranked[:KEPT])
+    kept, alike = {}, Counter[tuple[object, ...]]()
+    for actions, expected in ranked:
+        entries = list(_entries(actions))
+        topples = frozenset(entry for entry in entries if isinstance(entry, Topple))
+        moves = [entry for entry in entries if isinstance(entry, Shift)]
+        kind = (topples, *moves[:BEGINNING])
+        alike[kind] += 1
+        if alike[kind] <= ALIKE:
+            kept[actions] = expected
+        if len(kept) == KEPT:
+            break
+    return kept
+
+
+def neighbours(forecaster: Forecaster, actions: Sequence[Action], random: Random, tries: int) -> Iterator[Candidate]:
+    """Yield legal plans that differ from one by a single change, at random, out of so many tries."""
+    yield from _Annealing(forecaster, tuple(actions), random).beside(tries)
 
 
 class _Annealing:
@@ -120,6 +143,16 @@ class _Annealing:
                 continue
             self._entries, self._now = entries, tried
             yield Candidate(tried.actions, tried.expected)
+
+    def beside(self, tries: int) -> Iterator[Candidate]:
+        """Yield legal plans beside the one that it is at, which it stays at."""
+        for _ in range(tries):
+            entries, since = self._changed()
+            if entries is None or self._now is None:
+                continue
+            tried = self._followed(self._now.walks, entries, since)
+            if tried is not None and tried.actions != self._now.actions:
+                yield Candidate(tried.actions, tried.expected)
 
     def _changed(self) -> tuple[list[Entry] | None, int]:
         """Return the entries with one change, and the first that differs."""

@@ -14,6 +14,7 @@ from smash.forecast.model import default_model, model_from_document, read_model,
 from smash.forecast.robust import least_risk
 from smash.forecast.search import faster
 from smash.problem.errors import MalformedFile, Unsupported
+from smash.problem.files.plans import plan_from_document
 from smash.problem.model import PlanOptions
 from smash.problem.problem import Problem
 
@@ -128,6 +129,16 @@ def test_a_plan_for_seconds_says_what_it_expects(tmp_path):
     assert document["expected_seconds"] > 0
     assert document["status"] == ("optimal" if document["cost"] == document["lower_bound"] else "feasible")
     assert CliRunner().invoke(smash, ["validate", FIGURE, str(out)]).exit_code == 0
+
+
+@pytest.mark.parametrize(
+    "change", [{"expected_seconds": -1}, {"expected_seconds": "long"}, {"actions": None, "cost": None}]
+)
+def test_seconds_of_a_plan_file_are_seconds_of_a_plan(change):
+    document = {"format": "smash-plan/1", "instance": "x", "cost": 0, "actions": [], "expected_seconds": 2.5}
+    assert plan_from_document(document).expected_seconds == 2.5
+    with pytest.raises(MalformedFile):
+        plan_from_document(document | {"status": "unknown" if "cost" in change else "feasible"} | change)
 
 
 def test_the_door_takes_the_objective():

@@ -40,6 +40,8 @@ TIGHT_MARGINS = (0.005, 0.001)
 """Distances that a motion keeps where neither is possible [m]."""
 CLOSE_SECONDS = 0.3
 OPEN_SECONDS = 0.2
+PAUSE = 0.05
+"""Standing still between two motions, for the arm to catch up [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +54,13 @@ class Grip:
 
 Segment = Move | Grip
 """A piece of an action: a motion of the arm, or one of the fingers."""
+
+
+def duration(segments: Iterable[Segment]) -> float:
+    """How long planned motions take when they are followed, in simulated time [s]."""
+    return sum(
+        segment.seconds if isinstance(segment, Grip) else segment.trajectory.duration + PAUSE for segment in segments
+    )
 
 
 class ArmMotions:

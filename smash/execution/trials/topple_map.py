@@ -12,11 +12,11 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from smash.execution.actions.arm_motions import ArmMotions
+from smash.execution.actions.arm_motions import ArmMotions, duration
 from smash.execution.actions.pick_and_place import PickAndPlace
 from smash.execution.actions.topple import strip
 from smash.execution.grounding import Grounder, Task
-from smash.execution.performing import Performer, duration
+from smash.execution.performing import Performer
 from smash.execution.physics.engines import engine_of, world_of
 from smash.execution.policy import OPEN
 from smash.execution.readback import read_state
