@@ -209,6 +209,11 @@ def test_with_more_blocks_beams_help_and_beyond_forty_the_layered_model_proves_n
     assert rows(sized(blocks)) == [*FIRST, *exact, *layered, *LAST]
 
 
+def test_beyond_250_blocks_greedy_passes_have_half_of_the_time_and_beams_the_rest():
+    exact = [("precedence", 0.6, math.inf), ("greedy to its end", 1.0, math.inf), ("greedy passes", 0.5, math.inf)]
+    assert rows(sized(251)) == [*FIRST, *exact, ("beam", 1.0, math.inf), *LAST[1:]]
+
+
 @pytest.mark.parametrize(("blocks", "layered"), [(5, [("layered to the end", 1.0, math.inf)]), (41, [])])
 def test_costs_are_left_to_the_search_over_the_laws_states_and_to_the_layered_model(blocks, layered):
     general = [("greedy", 0.1, math.inf), ("the law's states", 0.6, math.inf)]
