@@ -7,7 +7,7 @@ SCENES := friction-0.10 friction-0.30 friction-0.40 friction-0.50
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help install install-all clean test test-slow test-timing lint ci suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full friction topple-map scoop reproduce reproduce-full results physics
+.PHONY: help install install-all clean test test-slow test-nightly test-timing lint ci suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full friction topple-map scoop reproduce reproduce-full results physics
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -33,7 +33,10 @@ test: needs-all-dev ## run the tests (minutes); slow ones with `make test-slow`
 	$(BIN)/python -m pytest
 
 test-slow: needs-all-dev ## run the slow tests too
-	$(BIN)/python -m pytest -m 'not timing' --timeout=900
+	$(BIN)/python -m pytest -m 'not timing and not nightly' --timeout=900
+
+test-nightly: needs-all-dev ## no planner that says optimal is contradicted on 2,000 random problems (hours)
+	$(BIN)/python -m pytest -m nightly
 
 test-timing: needs-all-dev ## run the tests of budgets and of times; nothing else should run beside them
 	$(BIN)/python -m pytest -m timing --timeout=900

@@ -30,10 +30,8 @@ from smash.problem.model import Instance, PlanOptions
 from smash.problem.problem import Problem
 
 GREEDY_SHARE = 0.1
-"""Share of the budget within which the greedy planner improves its plan, where the precedence graph is likely to have a
-better one; else it makes all of its passes first."""
-ROOMY = 0.25
-"""Buffers per block from which on the choices of the precedence graph are likely to find places."""
+"""Share of the budget within which the greedy planner improves its plan with topple, where the precedence graph has a
+better one soon; without it makes all of its passes first."""
 LIGHT_SECONDS = 0.12
 """For the interpreted search: what it proves needs no library to be loaded."""
 SMALL_BLOCKS = 12
@@ -140,7 +138,7 @@ class _Parts:
     @staticmethod
     def greedy_share(problem: Problem) -> float:
         """Return the share of the budget within which the greedy planner makes its passes at the beginning."""
-        return GREEDY_SHARE if _roomy(problem) else 1.0
+        return GREEDY_SHARE if problem.options.topple else 1.0
 
     def precedence_share(self, problem: Problem) -> float:
         """Return the share of the time left that the precedence graph may take."""
@@ -229,12 +227,6 @@ class _Parts:
         answer = LayeredPlanner().plan(problem, self.settings, left(until), Relay(log, "milp"))
         if answer.status == "infeasible":
             log.refute(answer.bound_origin or "layered")
-
-
-def _roomy(problem: Problem) -> bool:
-    """Whether the choices of the precedence graph are likely to find places: blocks that fall need none."""
-    instance = problem.instance
-    return problem.options.topple or len(instance.buffers) >= ROOMY * len(instance.blocks)
 
 
 def _cost(log: SolveLog) -> int:

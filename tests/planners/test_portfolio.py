@@ -167,9 +167,9 @@ LAST = [
 LAYERED = ("layered", 0.5, math.inf)
 
 
-def test_where_the_precedence_graph_is_unlikely_to_find_places_greedy_makes_all_of_its_passes_first():
-    for topple, buffers, share in ((False, 3, 1.0), (False, 20, 0.1), (True, 0, 0.1)):
-        problem = Problem(generate("multi", 20, buffers=buffers)[0], PlanOptions(topple))
+def test_without_topple_greedy_makes_all_of_its_passes_first():
+    for topple, share in ((False, 1.0), (True, 0.1)):
+        problem = Problem(generate("multi", 20, buffers=3)[0], PlanOptions(topple))
         assert rows(problem)[0] == ("greedy", share, math.inf)
 
 
