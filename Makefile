@@ -46,7 +46,10 @@ test: needs-all-dev ## run the tests (minutes); slow ones with `make test-slow`
 	$(BIN)/python -m pytest
 
 test-slow: needs-all-dev ## run the slow tests too
-	$(BIN)/python -m pytest -m 'not timing' --timeout=900
+	$(BIN)/python -m pytest -m 'not timing and not nightly' --timeout=900
+
+test-nightly: needs-all-dev ## no planner that says optimal is contradicted on 2,000 random problems (hours)
+	$(BIN)/python -m pytest -m nightly
 
 test-timing: needs-all-dev ## run the tests of budgets and of times; nothing else should run beside them
 	$(BIN)/python -m pytest -m timing --timeout=900
@@ -142,6 +145,9 @@ bench: needs-gurobi ## first plans, proofs, HiGHS against Gurobi, hundreds of bl
 
 proofs: needs-analysis ## the 3,120 problems of the committed sets (13 buffer counts, with and without topple), each proven (a minute)
 	for set in single-4 single-6 single-9 multi-4 multi-6 multi-9; do $(BIN)/smash frontier $$set --out runs/proofs/$$set || exit; done
+
+beside-greedy: needs-planning ## smash beside greedy alone on sixty stated problems of 50 to 2,000 blocks, at 1 and 10 s (20 minutes)
+	$(BIN)/python -m smash.experiments.studies.beside_greedy --out runs/beside-greedy.md
 
 scaling: needs-analysis ## time over 4 to 1,000 blocks, per planner: curves and exponents (hours; it can be resumed)
 	$(BIN)/smash scaling --out runs/scaling

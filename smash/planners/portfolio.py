@@ -30,10 +30,8 @@ from smash.problem.model import Instance, PlanOptions
 from smash.problem.problem import Problem
 
 GREEDY_SHARE = 0.1
-"""Share of the budget within which the greedy planner improves its plan, where the precedence graph is likely to have a
-better one; else it makes all of its passes first."""
-ROOMY = 0.25
-"""Buffers per block from which on the choices of the precedence graph are likely to find places."""
+"""Share of the budget within which the greedy planner improves its plan with topple, where the precedence graph has a
+better one soon; without it makes all of its passes first."""
 LIGHT_SECONDS = 0.12
 """For the interpreted search: what it proves needs no library to be loaded."""
 SMALL_BLOCKS = 12
@@ -44,6 +42,8 @@ PRECEDENCE_SHARE = 0.3
 """Share of the remaining budget for the precedence graph where the other exact methods have a chance too."""
 FEW_BLOCKS = 40
 """With more blocks than this the search over states and the layered model prove nothing more."""
+MANY_BLOCKS, PASSES_SHARE = 250, 0.5
+"""With more blocks a pass of the beam takes a minute: greedy passes get this share of the time left before it."""
 LARGE_SHARE = 0.6
 """Share of the remaining budget for the precedence graph with more blocks: the beam gets the rest."""
 LEAST_SHARE = 0.1
@@ -96,13 +96,15 @@ class SmashPlanner(MethodPlanner):
         wide_share = WIDE_SEARCH_SHARE if blocks <= FEW_BLOCKS else LARGE_SEARCH_SHARE
         precedence = Method("precedence", plain, part.precedence, part.precedence_share(problem))
         small = (Method("search", plain, part.search, SEARCH_SHARE), precedence)
-        large = (
+        large: tuple[Method, ...] = (
             precedence,
             Method("greedy to its end", plain, part.greedy),
             Method("greedy passes", plain, part.greedy_passes, FIRST_SHARE, FIRST_SECONDS),
             Method("first beam", plain, part.beams, FIRST_SHARE, FIRST_SECONDS),
             Method("search", plain, part.search, wide_share),
         )
+        if blocks > MANY_BLOCKS:
+            large = (*large[:2], Method("greedy passes", plain, part.greedy_passes, PASSES_SHARE))
         return (
             Method("greedy", anything, part.greedy, part.greedy_share(problem)),
             Method("light search", plain, part.light_search, most=LIGHT_SECONDS),
@@ -110,7 +112,7 @@ class SmashPlanner(MethodPlanner):
             Method("the law's states", not_plain, search_law_states, SEARCH_SHARE),
             Method("layered", lambda problem: plain(problem) or modelled(problem), part.layered, LAYERED_SHARE),
             Method("layered to the end", lambda problem: not_plain(problem) or modelled(problem), part.layered),
-            Method("beam", plain, part.beams, lambda: 1.0 if part.search_has_ended else BEAM_SHARE),
+            Method("beam", plain, part.beams, lambda: part.beam_share(problem)),
             Method("search to the end", plain, part.search),
             Method("beam to the end", plain, part.beams),
             Method("greedy passes to the end", plain, part.greedy_passes),
@@ -136,16 +138,16 @@ class _Parts:
     @staticmethod
     def greedy_share(problem: Problem) -> float:
         """Return the share of the budget within which the greedy planner makes its passes at the beginning."""
-        return GREEDY_SHARE if _roomy(problem) else 1.0
+        return GREEDY_SHARE if problem.options.topple else 1.0
 
     def precedence_share(self, problem: Problem) -> float:
         """Return the share of the time left that the precedence graph may take."""
         return PRECEDENCE_SHARE if len(problem.instance.blocks) <= FEW_BLOCKS else LARGE_SHARE
 
-    @property
-    def search_has_ended(self) -> bool:
-        """Whether the exact search over states can do no more."""
-        return self._search is not None and self._search.ended is not None
+    def beam_share(self, problem: Problem) -> float:
+        """Return the share of the time left for beams: all of it where the exact search over states can do no more."""
+        ended = self._search is not None and self._search.ended is not None
+        return 1.0 if ended or len(problem.instance.blocks) > MANY_BLOCKS else BEAM_SHARE
 
     def greedy(self, problem: Problem, log: SolveLog, until: float) -> None:
         """Plan as the greedy planner alone does: with the time for it no plan is dearer than its."""
@@ -225,12 +227,6 @@ class _Parts:
         answer = LayeredPlanner().plan(problem, self.settings, left(until), Relay(log, "milp"))
         if answer.status == "infeasible":
             log.refute(answer.bound_origin or "layered")
-
-
-def _roomy(problem: Problem) -> bool:
-    """Whether the choices of the precedence graph are likely to find places: blocks that fall need none."""
-    instance = problem.instance
-    return problem.options.topple or len(instance.buffers) >= ROOMY * len(instance.blocks)
 
 
 def _cost(log: SolveLog) -> int:

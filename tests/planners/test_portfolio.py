@@ -167,9 +167,9 @@ LAST = [
 LAYERED = ("layered", 0.5, math.inf)
 
 
-def test_where_the_precedence_graph_is_unlikely_to_find_places_greedy_makes_all_of_its_passes_first():
-    for topple, buffers, share in ((False, 3, 1.0), (False, 20, 0.1), (True, 0, 0.1)):
-        problem = Problem(generate("multi", 20, buffers=buffers)[0], PlanOptions(topple))
+def test_without_topple_greedy_makes_all_of_its_passes_first():
+    for topple, share in ((False, 1.0), (True, 0.1)):
+        problem = Problem(generate("multi", 20, buffers=3)[0], PlanOptions(topple))
         assert rows(problem)[0] == ("greedy", share, math.inf)
 
 
@@ -207,6 +207,11 @@ def test_with_more_blocks_beams_help_and_beyond_forty_the_layered_model_proves_n
         ("search", search, math.inf),
     ]
     assert rows(sized(blocks)) == [*FIRST, *exact, *layered, *LAST]
+
+
+def test_beyond_250_blocks_greedy_passes_have_half_of_the_time_and_beams_the_rest():
+    exact = [("precedence", 0.6, math.inf), ("greedy to its end", 1.0, math.inf), ("greedy passes", 0.5, math.inf)]
+    assert rows(sized(251)) == [*FIRST, *exact, ("beam", 1.0, math.inf), *LAST[1:]]
 
 
 @pytest.mark.parametrize(("blocks", "layered"), [(5, [("layered to the end", 1.0, math.inf)]), (41, [])])

@@ -40,7 +40,7 @@ class BeamSearch:
 
     Attributes:
         upper: what plans have to be cheaper than.
-        ended: why the search is over (`proven`: no plan is cheaper than `upper`; or what it cannot take), or None.
+        ended: why the search is over (`proven`: no plan is cheaper than `upper`), or None.
         width: of the layers of the pass that runs, or ran last.
         patterns: databases that bound the cost in the passes that begin from now on.
     """
@@ -55,10 +55,9 @@ class BeamSearch:
         self._seed = seed
         self._memory = memory
         self.patterns: Patterns | None = None
-        self._setting = make_setting(problem, options)
+        self._options = options
+        self._setting: Setting | None = None
         self._pass: _Pass | None = None
-        if self._setting is None:
-            self.ended = "too many blocks and kinds of locations for a byte"
 
     def lower_upper(self, upper: int) -> None:
         """Take over the cost of a better plan that others have found."""
@@ -86,7 +85,8 @@ class BeamSearch:
         code = Compiler.code(deadline)
         if code is None:
             return None
-        assert self._setting is not None
+        if self._setting is None:
+            self._setting = make_setting(self.problem, self._options)
         if self._memory is None:
             self._memory = min(free_memory(), MOST_MEMORY)
         self._pass = _Pass(self._setting, code, self.upper, self.width, self._memory, self._seed, self.patterns)
@@ -102,9 +102,9 @@ class BeamSearch:
         self._seed += 1
 
     def _widest(self) -> int:
-        """Return how wide layers may be for the ways back to fit: 8 bytes a state, at most a layer an action."""
+        """Return how wide layers may be for the ways back to fit: 12 bytes a state, at most a layer an action."""
         assert self._memory is not None
-        return self._memory // (8 * max(1, self.upper))
+        return self._memory // (12 * max(1, self.upper))
 
     def _take(self, running: _Pass, moves: list[Move], deadline: float) -> list[Step]:
         """Return the steps of a plan found, shortened where that is possible."""
@@ -137,7 +137,7 @@ class _Pass:
         self.engine = Engine(setting, code, compiled=True)
         self.over = self.truncated = self.cramped = False
         self._width = width
-        self._most = most_nodes(setting.task.blocks, memory)
+        self._most = most_nodes(setting.task.width * setting.task.blocks, memory)
         self._draw = np.random.default_rng(seed)
         self._store: Store = make_store(setting.task, True, min(FIRST_NODES, self._most), upper, upper, patterns)
         self.engine.unpack_start()
@@ -161,13 +161,15 @@ class _Pass:
         """
         engine, counters = self.engine, self._store.counters
         end = min(len(self._costs), self._expanded + engine.share)
+        engine.allow()
         self._expanded = engine.code.expand_layer(
             engine.task, engine.cells, self._rows, self._costs, self._estimates, self._store, self._expanded, end
         )
         best = int(counters[BEST])
         moves = None if best < 0 else self._moves(best)
         counters[BEST] = -1
-        if self._expanded < end and not self._grow():
+        full = int(counters[NODES]) == int(self._store.shape[2])
+        if self._expanded < end and full and not self._grow():
             self.truncated = self.cramped = True
             self._expanded = len(self._costs)
         if self._expanded == len(self._costs):
@@ -188,7 +190,7 @@ class _Pass:
         store: Any = self._store
         chosen = self._chosen()
         self._history.append((store.parent[chosen], store.moved[chosen], store.code[chosen]))
-        self._rows = store.states.reshape(int(store.shape[2]), self.engine.task.blocks)[chosen].reshape(-1)
+        self._rows = store.states.reshape(int(store.shape[2]), -1)[chosen].reshape(-1)
         self._costs, self._estimates = store.cost[chosen].astype("i8"), store.estimate[chosen].astype("i8")
         self._expanded = 0
         store.counters[NODES] = 0

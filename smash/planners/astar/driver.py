@@ -24,13 +24,13 @@ MOST_INTERPRETED = 100_000
 """Nodes filed while the machine code is still being made."""
 FIRST_NODES = 1 << 16
 MOST_BUCKETS = 1 << 24
-"""Beyond this the plan known is so far from the bound that no search can close the gap."""
+"""Where more would be needed the plan known is too far from the bound: plans are looked for nearer to it."""
 PATTERN_AFTER = 1.0
 """Seconds of the compiled search before pattern databases are built: smaller searches end sooner without them."""
 PATTERN_SHARE, PATTERN_SECONDS = 0.15, 40.0
 """Share of the time left, and most seconds, for building them; the search starts anew with them."""
-INTERPRETED_BLOCKS = 30
-"""With more blocks one expansion takes too long to be interpreted."""
+INTERPRETED_BLOCKS, BOUNDED_BLOCKS = 30, 250
+"""With more blocks one expansion takes too long to be interpreted; with more than the second the first bound too."""
 
 
 class StateSearch:
@@ -45,7 +45,8 @@ class StateSearch:
 
     Attributes:
         lower_bound: what no plan is cheaper than, so far.
-        ended: why the search is over (`proven`, `memory`, or what it cannot take), or None.
+        ended: why the search is over (`proven`; `memory`; `too far`: the plan known is too far from the bound for all
+            that lies between to be searched), or None.
         expanded: nodes expanded.
         patterns: the pattern databases that bound the cost too, once they are built.
     """
@@ -68,18 +69,31 @@ class StateSearch:
         self._patterned = takes_patterns(problem, options)
         self._interpreted = problem.blocks <= INTERPRETED_BLOCKS
         self._memory = free_memory() if memory is None else memory
-        setting = make_setting(problem, options)
-        if setting is None:
-            self.ended = "too many blocks and kinds of locations for a byte"
-            return
-        self._engine = StoreEngine(setting, INTERPRETED, False)
-        self._prove(min(self._engine.first_bound(), upper))
-        if self.lower_bound >= upper:
+        self._options = options
+        self._known = self._upper = upper
+        self._begun: StoreEngine | None = None
+        if problem.blocks <= BOUNDED_BLOCKS:
+            self._begin(INTERPRETED, INTERPRETED_NODES, compiled=False)
+
+    @property
+    def _engine(self) -> StoreEngine:
+        assert self._begun is not None
+        return self._begun
+
+    def _begin(self, code: Code, nodes: int, *, compiled: bool) -> None:
+        """Bound the start, and open the search from it."""
+        self._begun = StoreEngine(make_setting(self.problem, self._options), code, compiled)
+        self._prove(min(self._engine.first_bound(), self._known))
+        # As far above the bound as there are buckets for: the first bucket of all is at the bound.
+        self._upper = min(self._known, self.lower_bound + max(1, MOST_BUCKETS // (self._known + 1) - 1))
+        if self.lower_bound >= self._known:
             self.ended = "proven"
-        elif (upper - self.lower_bound + 1) * (upper + 1) > MOST_BUCKETS:
-            self.ended = "the plan known is too far from the bound"
         else:
-            self._engine.open(INTERPRETED_NODES, self.lower_bound, upper)
+            self._engine.open(nodes, self.lower_bound, self._upper)
+
+    def _exhausted(self) -> str:
+        """Return why a search is over that found nothing cheaper than it looked for."""
+        return "proven" if self._engine.counter(UPPER) < self._upper or self._upper == self._known else "too far"
 
     def run(self, deadline: float, may_compile: bool = True) -> list[Step] | None:
         """Search until a better plan is found (returned), the search has ended, or `deadline` [s, `perf_counter`].
@@ -96,7 +110,7 @@ class StateSearch:
             self._prove(min(engine.counter(FLOOR), engine.counter(UPPER)))
             self.expanded = engine.counter(EXPANDED)
             if outcome == PROVEN:
-                self.ended = "proven"
+                self.ended = self._exhausted()
             if engine.counter(BEST) != engine.reported:
                 engine.reported = engine.counter(BEST)
                 return engine.steps(self.problem, engine.path())
@@ -110,11 +124,14 @@ class StateSearch:
         if self.ended is not None:
             return
         self.lower_bound = max(self.lower_bound, lower_bound)
-        counters = self._engine.store.counters
-        counters[UPPER] = min(counters[UPPER], upper)
-        if self.lower_bound >= counters[UPPER]:
-            self.lower_bound = int(counters[UPPER])
+        self._known = min(self._known, upper)
+        if self.lower_bound >= self._known:
+            self.lower_bound = self._known
             self.ended = "proven"
+        elif self._begun is not None:
+            counters = self._begun.store.counters
+            counters[UPPER] = min(counters[UPPER], upper)
+            self._upper = min(self._upper, upper)
 
     def _prove(self, bound: int) -> None:
         if bound > self.lower_bound:
@@ -124,6 +141,11 @@ class StateSearch:
 
     def _ready(self, deadline: float, may_compile: bool) -> bool:
         """Take the compiled search where it is there, or where the problem is too large to be searched without."""
+        if self._begun is None:
+            code = Compiler.code(deadline) if may_compile else None
+            if code is not None:
+                self._begin(code, FIRST_NODES, compiled=True)
+            return self._begun is not None and self.ended is None
         if self._engine.compiled:
             return True
         if may_compile and (Compiler.started() or not self._interpreted):
@@ -137,7 +159,7 @@ class StateSearch:
             self._compile(min(deadline, perf_counter() + COMPILE_SECONDS))
             return True
         nodes = int(engine.store.shape[2])
-        most = most_nodes(engine.task.blocks, self._memory) if engine.compiled else MOST_INTERPRETED
+        most = most_nodes(engine.task.width * engine.task.blocks, self._memory) if engine.compiled else MOST_INTERPRETED
         if nodes >= most:
             self.ended = "memory" if engine.compiled else None
             return False
@@ -167,6 +189,6 @@ class StateSearch:
         # A plan that filing the start gave, and that nobody has heard of, is to be found again.
         unheard = self._engine.counter(BEST) != self._engine.reported
         upper = self._engine.counter(UPPER) + unheard
-        self._engine = StoreEngine(self._engine.setting, code, True)
+        self._begun = StoreEngine(self._engine.setting, code, True)
         self._engine.patterns = self.patterns
-        self._engine.open(FIRST_NODES, self.lower_bound, upper)
+        self._engine.open(FIRST_NODES, min(self.lower_bound, upper - 1), upper)

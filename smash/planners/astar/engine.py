@@ -15,6 +15,8 @@ from smash.problem.views.numbered import Numbered, Step
 WORK = {False: 3_000, True: 200_000}
 """What a share of expansions is worth, in blocks squared times locations: some milliseconds between two looks at
 the clock, interpreted and compiled."""
+TRIES = {False: 300_000, True: 20_000_000}
+"""The same for the moves of one expansion, in blocks times blocks and locations: those of a large state take longer."""
 
 Move = tuple[int, int]
 """A block, and what it is put on (`task.TOPPLED`: it falls, with all above it)."""
@@ -25,6 +27,7 @@ class Engine:
 
     Attributes:
         share: how many nodes to expand between two looks at the clock.
+        tries: how many moves to try at most between two looks at the clock.
     """
 
     def __init__(self, setting: Setting, code: Code, compiled: bool) -> None:
@@ -33,7 +36,13 @@ class Engine:
         self.code = code
         self.compiled = compiled
         self.cells = filled(setting.cells, compiled)
-        self.share = max(1, WORK[compiled] // max(1, self.task.blocks**2 * len(setting.class_of)))
+        blocks, locations = max(1, self.task.blocks), len(setting.class_of)
+        self.share = max(1, WORK[compiled] // max(1, blocks**2 * locations))
+        self.tries = max(1, TRIES[compiled] // (blocks * (blocks + locations)))
+
+    def allow(self) -> None:
+        """Allow the moves of a share to be tried."""
+        self.cells[self.task.allowed] = self.tries
 
     def at_start(self) -> int:
         """Take the start in hand, settled; return what its direct moves cost."""
@@ -87,6 +96,7 @@ class StoreEngine(Engine):
 
     def expand(self) -> int:
         """Expand a share of nodes."""
+        self.allow()
         return self.code.expand_some(self.task, self.cells, self.store, self.share)
 
     def counter(self, which: int) -> int:

@@ -13,15 +13,16 @@ from smash.planners.astar.task import Ints, Task
 NODES, UPPER, BEST, FLOOR, EXPANDED = range(5)
 """Entries of `Store.counters`: nodes filed; cost of the best plan known and the node that reached it (-1: it came
 from outside); the least estimate among the open nodes; nodes expanded."""
-RUNNING, PROVEN, FULL = range(3)
-"""What `expand_some` ends with: its share is done; no cheaper plan exists; the store is full."""
+RUNNING, PROVEN, FULL, DONE = range(4)
+"""What `expand_some` ends with: its share is done; no cheaper plan exists; the store is full. `_expand` also with the
+last: every move was tried."""
 DROPPED, NO_ROOM = -1, -2
 """What `file_node` returns where it files nothing that is to be expanded."""
 MASK = (1 << 40) - 1
 
 
 class Store(NamedTuple):
-    """The nodes of a search. `states` holds `blocks` bytes a node; `table` node + 1 by hash, 0 where free."""
+    """The nodes of a search. `states` holds `width * blocks` bytes a node; `table` node + 1 by hash, 0 where free."""
 
     states: Ints
     cost: Ints
@@ -77,12 +78,12 @@ def file_node(task: Task, cells: Ints, store: Store, parent: int, cost: int, mov
         estimate = max(estimate, cost + pattern_bound(task, cells, store.layout, store.tables))
     if estimate >= counters[UPPER]:
         return DROPPED
-    blocks = task.blocks
+    size = task.width * task.blocks
     node = counters[NODES]
     if node == store.shape[2]:
         return NO_ROOM
-    pack(task, cells, store.states, node * blocks)
-    place = _place_of(store, blocks, node)
+    pack(task, cells, store.states, node * size)
+    place = _place_of(store, size, node)
     known = store.table[place] - 1
     if known >= 0:
         if store.cost[known] <= cost:
@@ -103,21 +104,21 @@ def file_node(task: Task, cells: Ints, store: Store, parent: int, cost: int, mov
     return int(node)
 
 
-def _place_of(store: Store, blocks: int, node: int) -> int:
-    """Return where the state of `node` stands in the table, or the free entry where it belongs."""
+def _place_of(store: Store, size: int, node: int) -> int:
+    """Return where the state of `node`, of `size` bytes, stands in the table, or the free entry where it belongs."""
     states, table = store.states, store.table
-    first = node * blocks
+    first = node * size
     number = 0
-    for index in range(first, first + blocks):
+    for index in range(first, first + size):
         number = ((number ^ states[index]) * 1048583) & MASK
         number ^= number >> 17
     place = number & (store.shape[3] - 1)
     while table[place] != 0:
-        other = (table[place] - 1) * blocks
+        other = (table[place] - 1) * size
         index = 0
-        while index < blocks and states[other + index] == states[first + index]:
+        while index < size and states[other + index] == states[first + index]:
             index += 1
-        if index == blocks:
+        if index == size:
             return place
         place = (place + 1) & (store.shape[3] - 1)
     return place
@@ -127,11 +128,11 @@ def file_again(task: Task, store: Store) -> None:
     """Fill an emptied, larger `table` from the nodes."""
     for node in range(store.counters[NODES]):
         if store.stale[node] == 0:
-            store.table[_place_of(store, task.blocks, node)] = node + 1
+            store.table[_place_of(store, task.width * task.blocks, node)] = node + 1
 
 
 def expand_some(task: Task, cells: Ints, store: Store, share: int) -> int:
-    """Expand up to `share` nodes, cheapest estimate first and deepest first among equals.
+    """Expand up to `share` nodes, trying no more than `allowed` moves, cheapest estimate first, deepest among equals.
 
     Returns:
         RUNNING, PROVEN (no plan is cheaper than `UPPER`) or FULL.
@@ -150,8 +151,9 @@ def expand_some(task: Task, cells: Ints, store: Store, share: int) -> int:
             if done == share:
                 return RUNNING
             if store.stale[node] == 0:
-                if not _expand(task, cells, store, node):
-                    return FULL
+                outcome = _expand(task, cells, store, node)
+                if outcome != DONE:
+                    return outcome
                 done += 1
                 counters[EXPANDED] += 1
             store.heads[bucket + remaining] = store.following[node]
@@ -162,16 +164,39 @@ def expand_some(task: Task, cells: Ints, store: Store, share: int) -> int:
     return PROVEN
 
 
-def _expand(task: Task, cells: Ints, store: Store, node: int) -> bool:
-    """File every state one move away; False where the store filled up (the node is expanded again then)."""
-    offset = node * task.blocks
+def _expand(task: Task, cells: Ints, store: Store, node: int) -> int:
+    """File every state one move away.
+
+    Returns:
+        DONE, FULL (the node is expanded again then), or RUNNING where no more moves are allowed (it is gone on with).
+    """
+    offset = node * task.width * task.blocks
     unpack(task, cells, store.states, offset)
     settle(task, cells)
-    for number in range(list_moves(task, cells)):
+    for number in range(first_move(task, cells, node), list_moves(task, cells)):
+        if not may_try(task, cells, node, number):
+            return RUNNING
         block = cells[task.moves + 2 * number]
         code = cells[task.moves + 2 * number + 1]
         unpack(task, cells, store.states, offset)
         cost = store.cost[node] + apply_move(task, cells, block, code)
         if not file_state(task, cells, store, node, cost, block, code):
-            return False
+            return FULL
+    return DONE
+
+
+def first_move(task: Task, cells: Ints, node: int) -> int:
+    """Return the first move of a state that is to be tried: not 0 where its expansion was broken off."""
+    number = cells[task.resume] if cells[task.resumed] == node else 0
+    cells[task.resumed] = -1
+    return number
+
+
+def may_try(task: Task, cells: Ints, node: int, number: int) -> bool:
+    """Return whether move `number` of a state may still be tried; note where to go on with it where not."""
+    if cells[task.allowed] <= 0:
+        cells[task.resumed] = node
+        cells[task.resume] = number
+        return False
+    cells[task.allowed] -= 1
     return True

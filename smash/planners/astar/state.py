@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from smash.planners.astar.task import TOPPLED, Ints, Task
+from smash.planners.astar.task import BYTE, TOPPLED, Ints, Task
 
 
 def unpack(task: Task, cells: Ints, rows: Ints, offset: int) -> None:
     """Take the filed state at `rows[offset:]` apart into piles."""
     blocks = task.blocks
+    wide = task.width > 1
     table = blocks + task.classes
     fixed = 0 if task.anywhere else task.lines
     for line in range(fixed):
@@ -19,12 +20,12 @@ def unpack(task: Task, cells: Ints, rows: Ints, offset: int) -> None:
         cells[task.above + block] = -1
         cells[task.slot_of + block] = -1
     for block in range(blocks):
-        below = rows[offset + block]
+        below = _below(task, rows, offset + block) if wide else rows[offset + block]
         if below < blocks:
             cells[task.above + below] = block
     used = fixed
     for base in range(blocks):
-        below = rows[offset + base]
+        below = _below(task, rows, offset + base) if wide else rows[offset + base]
         if below < blocks or below == table:
             continue
         number = below - blocks
@@ -45,16 +46,37 @@ def unpack(task: Task, cells: Ints, rows: Ints, offset: int) -> None:
     cells[task.counters] = used
 
 
+def _below(task: Task, rows: Ints, place: int) -> int:
+    """Return the number that is filed at `place`, the first of its bytes."""
+    below = int(rows[place])
+    for byte in range(1, task.width):
+        below += int(rows[place + byte * task.blocks]) << (BYTE * byte)
+    return below
+
+
+def _file(task: Task, rows: Ints, place: int, below: int) -> None:
+    for byte in range(task.width):
+        rows[place + byte * task.blocks] = below >> (BYTE * byte) & 255
+
+
 def pack(task: Task, cells: Ints, rows: Ints, offset: int) -> None:
     """File the state in hand at `rows[offset:]`."""
     blocks = task.blocks
+    wide = task.width > 1
+    table = blocks + task.classes
     for block in range(blocks):
-        rows[offset + block] = blocks + task.classes
+        if wide:
+            _file(task, rows, offset + block, table)
+        else:
+            rows[offset + block] = table
     for slot in range(cells[task.counters]):
         below = blocks + cells[task.kind + slot]
         for level in range(cells[task.length + slot]):
             block = cells[task.content + slot * blocks + level]
-            rows[offset + block] = below
+            if wide:
+                _file(task, rows, offset + block, below)
+            else:
+                rows[offset + block] = below
             below = block
 
 

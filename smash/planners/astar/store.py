@@ -13,11 +13,11 @@ from smash.planners.astar.task import Ints, Task
 
 KINDS = {
     "states": "u1",
-    "cost": "i2",
-    "estimate": "i2",
+    "cost": "i4",
+    "estimate": "i4",
     "parent": "i4",
-    "moved": "i2",
-    "code": "i2",
+    "moved": "i4",
+    "code": "i4",
     "following": "i4",
     "stale": "u1",
     "table": "i4",
@@ -26,7 +26,7 @@ KINDS = {
 }
 """The numpy type of each array."""
 PER_NODE = ("cost", "estimate", "parent", "moved", "code", "following", "stale")
-NODE_BYTES = 17 + 8
+NODE_BYTES = 25 + 8
 """Memory of a node beside its state: its entries, and its share of a hash table half full [bytes]."""
 MOST_MEMORY = 2 << 30
 """The most memory that a search takes [bytes], if half of what is free is not less."""
@@ -45,8 +45,7 @@ def zeros(size: int, kind: str, compiled: bool, value: int = 0) -> Ints:
 def filled(values: list[int], compiled: bool, kind: str = "i8") -> Ints:
     """Return `values` as an array."""
     array = zeros(len(values), kind, compiled)
-    for index, value in enumerate(values):
-        array[index] = value
+    array[:] = values
     return array
 
 
@@ -66,7 +65,12 @@ def make_store(
     patterns = patterns or Patterns.none(compiled)
     table = table_size(nodes)
     width = upper + 1
-    sizes = {"states": nodes * task.blocks, "table": table, "heads": (upper - first + 1) * width, "counters": 5}
+    sizes = {
+        "states": nodes * task.width * task.blocks,
+        "table": table,
+        "heads": (upper - first + 1) * width,
+        "counters": 5,
+    }
     arrays = {
         name: zeros(sizes.get(name, nodes), kind, compiled, -1 if name == "heads" else 0)
         for name, kind in KINDS.items()
@@ -83,7 +87,7 @@ def grown(task: Task, store: Store, nodes: int, code: Code, compiled: bool) -> S
     """Return a store with room for `nodes` nodes and all that `store` holds."""
     arrays: dict[str, Any] = store._asdict()
     for name in ("states", *PER_NODE):
-        larger = zeros(nodes * (task.blocks if name == "states" else 1), KINDS[name], compiled)
+        larger = zeros(nodes * (task.width * task.blocks if name == "states" else 1), KINDS[name], compiled)
         larger[: len(arrays[name])] = arrays[name]
         arrays[name] = larger
     arrays["table"] = zeros(table_size(nodes), KINDS["table"], compiled)
@@ -98,9 +102,9 @@ def table_size(nodes: int) -> int:
     return 1 << max(4, (2 * nodes - 1).bit_length())
 
 
-def most_nodes(blocks: int, memory: int) -> int:
-    """Return how many nodes fit, when the last growth copies the largest array."""
-    return max(1, memory // (2 * blocks + NODE_BYTES + 8))
+def most_nodes(size: int, memory: int) -> int:
+    """Return how many nodes of states of `size` bytes fit, when the last growth copies the largest array."""
+    return max(1, memory // (2 * size + NODE_BYTES + 8))
 
 
 def free_memory() -> int:

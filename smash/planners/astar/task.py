@@ -2,9 +2,10 @@
 
 All of it stands in one sequence, `cells`: a list where the search is interpreted (nothing to import), a numpy
 array where it is compiled. `Task` says where each part begins: `cells[task.length + slot]` is the length of the
-pile in a slot. A state is filed as one byte per block: what is below it, that is a block `0 .. n-1`, the
-floor of a location of class c (`n + c`), or the table region (`n + classes`). Locations that nothing tells
-apart share a class, so that states which differ by their names only are one.
+pile in a slot. A state is filed as a number per block: what is below it, that is a block `0 .. n-1`, the
+floor of a location of class c (`n + c`), or the table region (`n + classes`); one byte each, and where that holds
+too little a second and a third, after the first of all blocks. Locations that nothing tells apart share a class, so
+that states which differ by their names only are one.
 """
 
 from __future__ import annotations
@@ -17,8 +18,10 @@ from smash.problem.views.numbered import Numbered
 from smash.problem.views.targets import Piles, goal_piles, towers_of
 
 Ints = MutableSequence[int]
-MOST_CODES = 256
-"""What is below a block is filed in one byte."""
+BYTE = 8
+"""Bits of what is below a block that are filed together."""
+UNBOUNDED = 1 << 40
+"""More moves than are ever tried between two looks at the clock."""
 TOPPLED = -1
 """The second half of a move that topples: the first is the lowest block that falls."""
 
@@ -31,6 +34,8 @@ class Task(NamedTuple):
     """
 
     blocks: int
+    width: int
+    """Bytes of a filed state per block."""
     classes: int
     lines: int
     topple: int
@@ -94,6 +99,12 @@ class Task(NamedTuple):
     """The number of moves to try."""
     moves: int
     """Pairs (block, code) of the moves to try."""
+    allowed: int
+    """How many more moves may be tried before the next look at the clock."""
+    resumed: int
+    """The state whose expansion was broken off for that, -1 for none."""
+    resume: int
+    """The first of its moves that was not tried."""
     trail: int
     """Pairs (block, code) of the direct moves made by `settle`."""
 
@@ -107,8 +118,8 @@ class Setting(NamedTuple):
     start: list[int]
 
 
-def make_setting(problem: Numbered, options: PlanOptions) -> Setting | None:
-    """Return the numbers of a problem, or None where a byte does not hold what can be below a block."""
+def make_setting(problem: Numbered, options: PlanOptions) -> Setting:
+    """Return the numbers of a problem."""
     wanted = goal_piles(problem)
     topples = [int(options.topple and location < problem.stacks) for location in range(problem.locations)]
     if wanted is None:
@@ -122,9 +133,8 @@ def make_setting(problem: Numbered, options: PlanOptions) -> Setting | None:
         grounded = [1] * len(lines)
         keys = [(at.index(location) if wanted[location] else -1, topple) for location, topple in enumerate(topples)]
     kinds = sorted(set(keys), reverse=True)
-    if problem.blocks + len(kinds) + 1 > MOST_CODES:
-        return None
     class_of = [kinds.index(key) for key in keys]
+    width = max(1, -(-(problem.blocks + len(kinds)).bit_length() // BYTE))
     room = problem.stacks if options.topple else problem.locations
     parts = {
         "class_size": [class_of.count(number) for number in range(len(kinds))],
@@ -134,7 +144,7 @@ def make_setting(problem: Numbered, options: PlanOptions) -> Setting | None:
         "line_grounded": grounded,
         **_listed(lines, problem.blocks),
         **_resting(problem),
-        **_scratch(problem.blocks, len(lines), len(kinds)),
+        **_scratch(problem.blocks, len(lines), len(kinds), min(problem.blocks, problem.locations)),
     }
     cells: list[int] = []
     begins: dict[str, int] = {}
@@ -143,6 +153,7 @@ def make_setting(problem: Numbered, options: PlanOptions) -> Setting | None:
         cells += values
     task = Task(
         blocks=problem.blocks,
+        width=width,
         classes=len(kinds),
         lines=len(lines),
         topple=int(options.topple),
@@ -151,7 +162,7 @@ def make_setting(problem: Numbered, options: PlanOptions) -> Setting | None:
         tidy=int(wanted is not None or room >= problem.blocks),
         **begins,
     )
-    return Setting(task, cells, class_of, _filed(problem, class_of, len(kinds)))
+    return Setting(task, cells, class_of, _filed(problem, class_of, len(kinds), width))
 
 
 def _listed(lines: Piles, blocks: int) -> dict[str, list[int]]:
@@ -179,9 +190,12 @@ def _resting(problem: Numbered) -> dict[str, list[int]]:
     }
 
 
-def _scratch(blocks: int, lines: int, classes: int) -> dict[str, list[int]]:
-    """Return the parts that change: a state in hand has a slot a line, a pile, and a direct move at most."""
-    slots = lines + 2 * blocks + 2
+def _scratch(blocks: int, lines: int, classes: int, piles: int) -> dict[str, list[int]]:
+    """Return the parts that change: a state in hand has a slot a line and a pile, and one for each pile begun after.
+
+    One move begins a pile, and each line one by its first block.
+    """
+    slots = 2 * lines + piles + 2
     sizes = {
         **dict.fromkeys(("length", "kind", "keep", "left", "mark"), slots),
         **dict.fromkeys(("slot_of", "above", "loose"), blocks),
@@ -190,17 +204,18 @@ def _scratch(blocks: int, lines: int, classes: int) -> dict[str, list[int]]:
         "class_used": classes,
         "counters": 1,
         "listed": 1,
-        "moves": 2 * (blocks + 1) * (blocks + classes + 1),
+        "moves": 2 * (blocks + 1) * (piles + classes + 2),
         "trail": 4 * blocks + 2,
     }
-    return {name: [0] * size for name, size in sizes.items()}
+    parts = {name: [0] * size for name, size in sizes.items()}
+    return {**parts, "allowed": [UNBOUNDED], "resumed": [-1], "resume": [0]}
 
 
-def _filed(problem: Numbered, class_of: list[int], classes: int) -> list[int]:
+def _filed(problem: Numbered, class_of: list[int], classes: int, width: int) -> list[int]:
     row = [problem.blocks + classes] * problem.blocks
     for location, pile in enumerate(problem.start):
         below = problem.blocks + class_of[location]
         for block in pile:
             row[block] = below
             below = block
-    return row
+    return [below >> (BYTE * byte) & ((1 << BYTE) - 1) for byte in range(width) for below in row]

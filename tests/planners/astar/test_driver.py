@@ -70,9 +70,21 @@ def test_a_deadline_that_is_over_ends_no_search(interpreted):
     assert search.ended is None
 
 
-def test_a_plan_too_far_from_the_bound_is_not_searched_from(interpreted):
-    search = StateSearch(Numbered.of(generate("multi", 6, buffers=0, seed=3)[0]), NO_TOPPLE, 10_000)
-    assert search.ended == "the plan known is too far from the bound"
+def test_where_the_plan_known_is_too_far_from_the_bound_plans_are_looked_for_nearer_to_it(interpreted, monkeypatch):
+    problem = Numbered.of(generate("multi", 6, buffers=0, seed=1)[0])
+    plain = StateSearch(problem, NO_TOPPLE, 60)
+    while plain.ended is None:
+        plain.run(math.inf)
+    far = StateSearch(problem, NO_TOPPLE, 10_000)
+    while far.ended is None:
+        far.run(math.inf)
+    assert (far.ended, far.lower_bound) == ("proven", plain.lower_bound)
+    monkeypatch.setattr(driver, "MOST_BUCKETS", 20_002)
+    near = StateSearch(problem, NO_TOPPLE, 10_000)
+    first = near.lower_bound
+    while near.ended is None:
+        assert near.run(math.inf) is None
+    assert (near.ended, near.lower_bound) == ("too far", first + 1)
 
 
 @pytest.mark.usefixtures("machine_code")

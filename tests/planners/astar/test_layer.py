@@ -68,3 +68,18 @@ def test_where_the_store_is_full_the_state_is_expanded_again():
     roomy = make_store(hand.task, False, 100, UP, UP)
     assert expand_layer(hand.task, hand.cells, [*row, *row], [cost] * 2, [0] * 2, roomy, 0, 2) == 2
     assert set(roomy.parent[: roomy.counters[NODES]]) == {0}
+
+
+def test_with_few_moves_allowed_at_a_time_the_next_layer_is_the_same():
+    hand = Hand(generate("multi", 7, buffers=2, seed=1)[0], PlanOptions(topple=False))
+    row, cost = layer_of(hand)
+    whole, parts = (make_store(hand.task, False, 500, UP, UP) for _ in range(2))
+    assert expand_layer(hand.task, hand.cells, row, [cost], [0], whole, 0, 1) == 1
+    looks, begun = 0, 0
+    while begun < 1:
+        hand.cells[hand.task.allowed] = 2
+        begun = expand_layer(hand.task, hand.cells, row, [cost], [0], parts, begun, 1)
+        looks += 1
+    assert looks > 2
+    assert filed_in(hand, parts) == filed_in(hand, whole)
+    assert parts.counters[NODES] == whole.counters[NODES]

@@ -101,6 +101,7 @@ def test_a_spent_budget_leaves_a_plan_and_a_proven_bound():
 
 def test_spent_memory_ends_the_search_with_the_bound(monkeypatch):
     monkeypatch.setattr(driver, "INTERPRETED_NODES", 50)
+    monkeypatch.setattr(driver.Compiler, "code", lambda deadline: None)
     monkeypatch.setattr(driver.StateSearch, "_grow", lambda self, deadline: setattr(self, "ended", "memory"))
     instance = generate("multi", 12, buffers=0)[0]
     result = AStarPlanner().solve(instance, SolveOptions(topple=False), 5)

@@ -131,3 +131,16 @@ def test_without_room_nothing_is_filed(start):
 def test_what_cannot_be_cheaper_than_the_plan_known_is_dropped(start):
     start.store.counters[UPPER] = start.first_bound()
     assert filed(start, 0) == DROPPED
+
+
+@pytest.mark.parametrize("topple", [True, False])
+def test_with_few_moves_allowed_at_a_time_the_optimum_is_the_same(topple):
+    instance, options = generate("multi", 5, buffers=1, seed=3)[0], PlanOptions(topple)
+    best = optimal_cost(instance, options)
+    whole, parts = (opened(instance, options, best + 2) for _ in range(2))
+    parts.tries = 3
+    for engine in (whole, parts):
+        while (outcome := engine.expand()) == RUNNING:
+            pass
+        assert outcome == PROVEN
+    assert parts.counter(UPPER) == whole.counter(UPPER) == best

@@ -2,9 +2,11 @@
 
 import pytest
 
+from smash.planners.astar import state
 from smash.planners.astar.task import make_setting
 from smash.problem import OnGoal, PlanOptions, PositionsGoal, StacksGoal, make_instance
 from smash.problem.views.numbered import Numbered
+from tests.arrangements import wide
 
 
 def setting_of(goal, topple=True, start=None, table=(), cap=None):
@@ -55,10 +57,28 @@ def test_relations_are_built_at_once_only_where_every_block_has_a_location(block
     assert setting_of(PositionsGoal({"a": ("s1", 1)}), start={"s1": blocks}).task.tidy == 1
 
 
-@pytest.mark.parametrize(("blocks", "fits"), [(250, True), (256, False)])
-def test_what_a_byte_does_not_hold_is_left_to_others(blocks, fits):
+@pytest.mark.parametrize(("blocks", "width"), [(0, 1), (250, 1), (254, 1), (255, 2), (300, 2)])
+def test_a_state_has_the_bytes_that_what_is_below_a_block_needs(blocks, width):
     names = [f"b{number}" for number in range(blocks)]
     instance = make_instance(
         name="x", blocks=names, stacks=["s1"], start={"s1": names}, goal=StacksGoal({"s1": tuple(names)})
     )
-    assert (make_setting(Numbered.of(instance), PlanOptions()) is not None) == fits
+    setting = make_setting(Numbered.of(instance), PlanOptions())
+    assert setting.task.width == width
+    assert len(setting.start) == width * blocks
+    assert max(setting.start, default=0) < 256
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_wide_state_is_what_was_filed(seed):
+    problem = Numbered.of(wide(300, 7, seed, buffers=2))
+    setting = make_setting(problem, PlanOptions(topple=False))
+    cells, row = list(setting.cells), [0] * len(setting.start)
+    state.unpack(setting.task, cells, setting.start, 0)
+    state.pack(setting.task, cells, row, 0)
+    assert row == setting.start
+    piles = sorted(
+        cells[setting.task.content + slot * 300 : setting.task.content + slot * 300 + cells[setting.task.length + slot]]
+        for slot in range(cells[setting.task.counters])
+    )
+    assert [pile for pile in piles if pile] == sorted(list(pile) for pile in problem.start if pile)
