@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from math import isnan
-from typing import Any
+from typing import Any, TypeVar
 
 import click
 
 from smash.problem.actions.registry import FAMILY
+
+Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
 without_option = click.option(
     "--without",
@@ -75,3 +77,21 @@ class _Seconds(click.FloatRange):
 
 SECONDS = _Seconds(min=0, min_open=True, max=1e9)
 """The type of options that take a span of time."""
+BUDGET = 30.0
+"""The paper's [s]: what `--budget` is where nothing else is said, in every command."""
+
+
+def budget_option(whose: str) -> Callable[[Decorated], Decorated]:
+    """Return `--budget`, which means and is the same in every command: wall time, at most.
+
+    Args:
+        whose: what it is the time of, in words.
+    """
+    return click.option(
+        "--budget",
+        type=SECONDS,
+        default=BUDGET,
+        show_default=True,
+        metavar="SECONDS",
+        help=f"Wall time {whose}, model building and translation included.",
+    )
