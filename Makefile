@@ -7,7 +7,7 @@ SCENES := friction-0.10 friction-0.30 friction-0.40 friction-0.50
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help install install-all docs clean test test-slow test-timing lint ci suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full friction topple-map scoop reproduce reproduce-full results physics
+.PHONY: help install install-all docs dataset clean test test-slow test-timing lint ci suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full friction topple-map scoop reproduce reproduce-full results physics
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -105,6 +105,9 @@ best-known: needs-pddl ## best known costs and bounds of the open instances, and
 	$(BIN)/python -m smash sweep experiments/open.toml --out runs/open
 	$(BIN)/python -m smash best-known update runs/open
 	$(BIN)/python -m smash best-known table --into docs/open-instances.md
+
+dataset: needs-planning ## the instance sets with proven optima, best plans, certificates and Croissant metadata: results/dataset (a minute)
+	$(BIN)/python -m smash dataset --out results/dataset
 
 compare: needs-analysis-clingo-cp-sat-didp-pddl ## all planners, of every paradigm, on a stated subset of the committed sets (at most 30 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/compare.toml --out runs/compare

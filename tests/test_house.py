@@ -39,7 +39,7 @@ ORDERS = {
     ),
     "smash.experiments": (
         *("environment", "isolation", "sweeps", "episodes", "best_known", "studies"),
-        *("reproduction", "planning", "executing", "comparison"),
+        *("reproduction", "planning", "executing", "comparison", "dataset"),
     ),
     "smash_analysis": (
         *("statistics", "metrics", "tables", "charts", "command"),
