@@ -158,6 +158,9 @@ best-known: needs-pddl ## best known costs and bounds of the open instances, and
 	$(BIN)/python -m smash best-known update runs/open
 	$(BIN)/python -m smash best-known table --into docs/open-instances.md
 
+dataset: needs-planning ## the instance sets with proven optima, best plans, certificates and Croissant metadata: results/dataset (a minute)
+	$(BIN)/python -m smash dataset --out results/dataset
+
 compare: needs-analysis-clingo-cp-sat-didp-pddl ## all planners, of every paradigm, on a stated subset of the committed sets (at most 30 minutes on 2 cores)
 	$(BIN)/python -m smash sweep experiments/compare.toml --out runs/compare
 	$(BIN)/python -m smash_analysis.comparison runs/compare

@@ -52,7 +52,7 @@ ORDERS = {
     ),
     "smash.experiments": (
         *("environment", "isolation", "weighing", "sweeps", "episodes", "best_known", "studies"),
-        *("reproduction", "planning", "executing", "comparison"),
+        *("reproduction", "planning", "executing", "comparison", "dataset"),
     ),
     "smash_analysis": (
         *("statistics", "metrics", "tables", "charts", "command"),

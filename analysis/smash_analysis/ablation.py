@@ -13,6 +13,7 @@ from smash_analysis.statistics.conditions import conditions
 from smash_analysis.statistics.findings import findings
 from smash_analysis.tables.believed import runs_of
 from smash_analysis.tables.cells import matched_cells, variant_cells
+from smash_analysis.tables.latex import write_latex
 from smash_analysis.tables.readings import cutoff_check, readings
 from smash_analysis.tables.runs import runs_table
 from smash_analysis.tables.writing import ablation_table, markdown, write_csv
@@ -35,6 +36,7 @@ def make(results: Path, out: Path) -> list[Path]:
         write_csv(frame, file)
     files[4].write_text(markdown(table), encoding="utf-8")
     files[5].write_text(findings(cells, matched, check) + conditions(records), encoding="utf-8")
+    files += write_latex(table, "Ablation: runs at the largest budget", "tab:ablation", out / "table")
     return files + _pictures(cells, matched, out)
 
 
@@ -42,11 +44,12 @@ def _pictures(cells: pd.DataFrame, matched: pd.DataFrame, out: Path) -> list[Pat
     files = []
     for (label, suite), part in cells.groupby(["label", "suite"]):
         pairs = matched[(matched["label"] == label) & (matched["suite"] == suite)]
-        figure = planner_figure(str(label), str(suite), part, pairs)
         name = re.sub(r"[^A-Za-z0-9._-]+", "-", f"heatmap-{label}-{suite}").strip("-")
-        for ending in ("png", "pdf"):
-            files.append(out / f"{name}.{ending}")
-            figure.savefig(files[-1], dpi=200)
+        figure = planner_figure(str(label), str(suite), part, pairs)
+        column = planner_figure(str(label), str(suite), part, pairs, narrow=True)
+        for drawn, file in ((figure, f"{name}.png"), (figure, f"{name}.pdf"), (column, f"{name}-column.pdf")):
+            files.append(out / file)
+            drawn.savefig(files[-1], dpi=250)
     return files
 
 

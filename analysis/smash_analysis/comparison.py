@@ -18,8 +18,9 @@ from smash_analysis.charts.curves import anytime_chart, coverage_chart
 from smash_analysis.metrics import PREFIX, metric_names
 from smash_analysis.statistics.conditions import conditions
 from smash_analysis.tables.believed import believed_of
+from smash_analysis.tables.latex import write_latex
 from smash_analysis.tables.runs import runs_table
-from smash_analysis.tables.writing import markdown, mean_std, median_iqr, share, write_csv
+from smash_analysis.tables.writing import markdown, mean_std, median_iqr, of_seconds, share, write_csv
 
 PROBLEM = ["instance_hash", "variant"]
 GROUP = ["suite", "blocks", "buffers", "variant"]
@@ -75,8 +76,8 @@ def _row(mine: pd.DataFrame) -> dict[str, object]:
         "coverage": f"{int(mine['solved'].sum())}/{len(mine)}",
         "coverage [95 %]": share(int(mine["solved"].sum()), len(mine)),
         "proven": f"{int(mine['proven'].sum())}/{len(mine)}",
-        "first plan [s]": median_iqr(mine["first_seconds"]),
-        "best plan [s]": median_iqr(mine["best_seconds"]),
+        "first plan [s]": of_seconds(median_iqr, mine["first_seconds"]),
+        "best plan [s]": of_seconds(median_iqr, mine["best_seconds"]),
         "cost, solved": mean_std(mine["cost"]),
         "cost, common": f"{mean_std(shared['cost'])} (n={len(shared)})",
         "median cost": median_iqr(mine["cost"], 1),
@@ -128,6 +129,7 @@ def write(found: Believed, out: Path) -> list[Path]:
     page += [] if left_out else ["## Contradictions between planners", "", "None."]
     files.append(out / "comparison.md")
     files[-1].write_text("\n".join([*page, conditions(records)]), encoding="utf-8")
+    files += write_latex(table, "Planners on the same problems", "tab:comparison", out / "comparison")
     for name, draw in (("anytime", anytime_chart), ("coverage", coverage_chart)):
         figure = draw(records).figure()
         for ending in ("png", "pdf"):

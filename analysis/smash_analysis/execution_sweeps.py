@@ -16,6 +16,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from smash.problem.errors import SmashError
+from smash.problem.words import counted
 from smash.records.engines import require_one_engine
 from smash.records.files import TRIALS
 from smash_analysis.command import fail
@@ -45,7 +46,7 @@ def scene_table(episodes: pd.DataFrame) -> pd.DataFrame:
         rows.append(
             {
                 **dict(zip(keys, key, strict=True)),
-                "success": rate_cell(success_rate(group, "success"), "episodes"),
+                "success": rate_cell(success_rate(group, "success"), "episode"),
                 "planned actions": _mean(group, "cost"),
                 "replans": int(group["replans"].sum()),
                 "compared on, instances (episodes)": f"{shared['instance'].nunique()} ({len(shared)})",
@@ -155,7 +156,7 @@ def make(results: Path, maps: Sequence[Path], out: Path) -> list[Path]:
     episodes = read_episodes(results)
     episodes["scene"] = episodes["scene"].fillna(DEFAULT)
     out.mkdir(parents=True, exist_ok=True)
-    parts = ["# Friction\n", f"{len(episodes)} episodes. {LEGEND}\n", markdown(scene_table(episodes))]
+    parts = ["# Friction\n", f"{counted(len(episodes), 'episode')}. {LEGEND}\n", markdown(scene_table(episodes))]
     saved = saved_table(episodes)
     if len(saved):
         parts += ["## Execution time saved by topple, paired by instance\n", f"{SPREADS}\n", markdown(saved)]

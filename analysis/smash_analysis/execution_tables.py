@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from smash.problem.words import counted
 from smash.records.engines import require_one_engine
 from smash.records.episodes import EpisodeRecord
 from smash.records.files import EPISODES
@@ -14,8 +15,18 @@ from smash_analysis import command
 from smash_analysis.statistics.intervals import paired, success_rate
 from smash_analysis.tables.believed import records_of
 from smash_analysis.tables.episodes import episodes_table
+from smash_analysis.tables.latex import write_latex
 from smash_analysis.tables.paper_tables import METRICS, PAPER, SIZES, Metric
-from smash_analysis.tables.writing import RATES, SPREADS, latex, markdown, mean_std, rate_cell, with_spread, write_csv
+from smash_analysis.tables.writing import (
+    RATES,
+    SPREADS,
+    markdown,
+    mean_std,
+    of_seconds,
+    rate_cell,
+    with_spread,
+    write_csv,
+)
 
 LEGEND = (
     f"Cells: mean ± std (median) over instances; the paper: mean ± std. {RATES} "
@@ -100,12 +111,16 @@ def _cell(group: pd.DataFrame, metric: Metric) -> str:
     if group.empty:
         return "–"
     if metric.name == "success":
-        return rate_cell(success_rate(group, "success"), "episodes")
+        return rate_cell(success_rate(group, "success"), "episode")
     values = group if metric.of_plan else group[group["success"]]
     each = values.groupby("instance")[metric.column].mean().dropna()
     if each.empty:
         return "–"
-    return f"{mean_std(each, metric.digits)} ({each.median():.{metric.digits}f})"
+
+    def show(values: pd.Series[float]) -> str:
+        return f"{mean_std(values, metric.digits)} ({values.median():.{metric.digits}f})"
+
+    return of_seconds(show, each, metric.digits) if metric.column.endswith("_seconds") else show(each)
 
 
 def paired_table(episodes: pd.DataFrame) -> pd.DataFrame:
@@ -127,20 +142,20 @@ def paired_table(episodes: pd.DataFrame) -> pd.DataFrame:
         rows.append(
             {
                 "benchmark": benchmark,
+                "saved [%]": f"{100 * (1 - 1 / pair.ratio):.0f}" if pair.ratio > 0 else "–",
+                "saved [s], mean [95 %] (range)": with_spread(pair.mean, pair.interval, pair.units),
                 "blocks": blocks,
                 "planner": label,
                 "variant": variant,
                 "policy": policy,
-                "success without": rate_cell(pair.left_rate, "episodes"),
-                "success with": rate_cell(pair.right_rate, "episodes"),
-                "instances": pair.units,
+                "the paper [%]": _paper_saved(str(benchmark), int(str(blocks))),
                 "without [s]": f"{pair.left_mean:.1f}" if pair.units else "–",
-                "saved [s], mean [95 %] (range)": with_spread(pair.mean, pair.interval, pair.units),
-                "saved [%]": f"{100 * (1 - 1 / pair.ratio):.0f}" if pair.ratio > 0 else "–",
+                "instances": pair.units,
+                "success without": rate_cell(pair.left_rate, "episode"),
+                "success with": rate_cell(pair.right_rate, "episode"),
                 "replanning without, with [s]": f"{replanning.left_mean:.2f}, {replanning.right_mean:.2f}"
                 if replanning.units
                 else "–",
-                "the paper [%]": _paper_saved(str(benchmark), int(str(blocks))),
                 "faster, equal, slower": ", ".join(map(str, pair.tally)),
             }
         )
@@ -214,7 +229,7 @@ def make(results: Path, out: Path) -> list[Path]:
     """
     episodes = read_episodes(results)
     out.mkdir(parents=True, exist_ok=True)
-    count = f"{len(episodes)} episodes, {int(episodes['success'].sum())} successful."
+    count = f"{counted(len(episodes), 'episode')}, {int(episodes['success'].sum())} successful."
     parts = ["# Execution\n", f"{count} {LEGEND}\n"]
     files = [out / "episodes.csv", out / "tables.md"]
     write_csv(episodes, files[0])
@@ -223,8 +238,7 @@ def make(results: Path, out: Path) -> list[Path]:
             continue
         table = metric_table(episodes, benchmark)
         parts += [f"## {title}\n", markdown(table)]
-        files.append(out / f"table-{benchmark}.tex")
-        files[-1].write_text(latex(table, title, f"tab:{benchmark}"), encoding="utf-8")
+        files += write_latex(table, title, f"tab:{benchmark}", out / f"table-{benchmark}")
     paired, failed = paired_table(episodes), failure_table(episodes)
     if len(paired):
         parts += ["## Execution time saved by topple, paired by instance\n", f"{SPREADS}\n", markdown(paired)]

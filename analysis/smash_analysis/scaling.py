@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
+from smash.problem.words import counted
 from smash.records.runs import RunRecord
 from smash_analysis import command
 from smash_analysis.charts.panels import Chart, Panel, curves
@@ -105,7 +106,7 @@ def scaling_chart(cells: pd.DataFrame, column: str) -> Chart:
             axis.xaxis.set_major_formatter("{x:g}")
             axis.yaxis.set_major_formatter("{x:g}")
 
-        words = "as many buffers as blocks" if room == "blocks" else f"{room} buffers"
+        words = "as many buffers as blocks" if room == "blocks" else counted(int(room), "buffer")
         return Panel(
             f"{variant}, {words}", draw, f"{MEASURES[column]}, median seconds over blocks, both axes logarithmic"
         )

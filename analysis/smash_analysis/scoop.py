@@ -13,7 +13,8 @@ from smash_analysis import command
 from smash_analysis.execution_tables import read_episodes
 from smash_analysis.statistics.intervals import bootstrap, bootstrap_ratio
 from smash_analysis.tables.believed import runs_of
-from smash_analysis.tables.writing import SPREADS, latex, markdown, with_spread, write_csv
+from smash_analysis.tables.latex import write_latex
+from smash_analysis.tables.writing import SPREADS, markdown, with_spread, write_csv
 
 BASELINE = "no-topple-no-carry-no-lift"
 NAMES = {
@@ -113,11 +114,10 @@ def make(results: Path, out: Path) -> list[Path]:
     """
     table = scoop_table(runs_of(results), read_episodes(results))
     out.mkdir(parents=True, exist_ok=True)
-    files = [out / "scoop.md", out / "scoop.tex", out / "scoop.csv"]
+    files = [out / "scoop.md", out / "scoop.csv"]
     files[0].write_text(f"# The scoop\n\n{LEGEND}\n\n{markdown(table)}", encoding="utf-8")
-    files[1].write_text(latex(table, "The demonstration of the scoop", "tab:scoop"), encoding="utf-8")
-    write_csv(table, files[2])
-    return files
+    write_csv(table, files[1])
+    return files + write_latex(table, "The demonstration of the scoop", "tab:scoop", out / "scoop")
 
 
 def main() -> None:

@@ -44,6 +44,9 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "report": ("smash.cli.report", "records as one page to read, and its parts for a paper"),
     "records": ("smash.cli.records", "check the records of a sweep, or write them as tables"),
     "best-known": ("smash.cli.best_known", "keep the list of best known costs of the open instances"),
+    "dataset": ("smash.cli.dataset", "write the instance sets with what is proven of them, to cite and load"),
+    "prompt": ("smash.cli.prompt", "print a problem for a language model, in words or in PDDL"),
+    "score": ("smash.cli.score", "judge plans from elsewhere: legality, gap to the best known cost"),
     "submit-check": ("smash.cli.submit_check", "say whether a plan improves on the best known one"),
 }
 """Subcommand -> (module that holds a click command called `command`, one line of help)."""

@@ -8,7 +8,7 @@ from time import perf_counter
 import click
 
 from smash.cli import fail
-from smash.cli.choices import SECONDS
+from smash.cli.choices import budget_option
 from smash.problem.certificate import certificate_text, why_not_certified
 from smash.problem.files.documents import write_text
 from smash.problem.files.instances import read_instance
@@ -19,14 +19,7 @@ from smash.problem.problem import Problem
 @click.command("certify")
 @click.argument("instance", type=click.Path(path_type=Path))
 @click.argument("plan", type=click.Path(path_type=Path))
-@click.option(
-    "--budget",
-    type=SECONDS,
-    default=30.0,
-    show_default=True,
-    metavar="SECONDS",
-    help="Time for finding the proof.",
-)
+@budget_option("of the search for the proof")
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), required=True, help="Certificate to write.")
 def command(instance: Path, plan: Path, budget: float, out: Path) -> None:
     """Write a certificate of a lower bound on all plans with PLAN's options (topple or not, cap).

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from math import isnan
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -13,6 +13,8 @@ from smash.problem.extras import ENGINES
 
 if TYPE_CHECKING:
     from smash.execution.scene.tabletop import Tabletop
+
+Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
 without_option = click.option(
     "--without",
@@ -105,3 +107,21 @@ class _Seconds(click.FloatRange):
 
 SECONDS = _Seconds(min=0, min_open=True, max=1e9)
 """The type of options that take a span of time."""
+BUDGET = 30.0
+"""The paper's [s]: what `--budget` is where nothing else is said, in every command."""
+
+
+def budget_option(whose: str) -> Callable[[Decorated], Decorated]:
+    """Return `--budget`, which means and is the same in every command: wall time, at most.
+
+    Args:
+        whose: what it is the time of, in words.
+    """
+    return click.option(
+        "--budget",
+        type=SECONDS,
+        default=BUDGET,
+        show_default=True,
+        metavar="SECONDS",
+        help=f"Wall time {whose}, model building and translation included.",
+    )

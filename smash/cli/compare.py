@@ -2,27 +2,28 @@
 
 from __future__ import annotations
 
+import re
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from smash.cli.choices import encoding_option, named_commands
+from smash.cli.choices import budget_option, encoding_option, named_commands
+from smash.cli.shown_tables import show
 from smash.cli.sweep import installed_runs, run_all
 from smash.experiments.comparison import comparison_of
 from smash.experiments.isolation.job import DEFAULT_MEMORY
 from smash.experiments.sweeps.keep import keep
 from smash.problem.extras import TABLES, require
-from smash.problem.words import one_line
+from smash.problem.words import counted, one_line
 from smash.records.believing import believed_runs
 from smash.records.runs import RunRecord
 
-if TYPE_CHECKING:
-    import pandas as pd
-
 SHORT = {"first plan [s]": "first [s]", "best plan [s]": "best [s]", "cost, solved": "cost", "cost, common": "common"}
-"""The table's columns in a terminal, under shorter names and without intervals; the files hold them all."""
+"""The table's columns in a terminal, under shorter names; the files hold them all."""
+INTERVAL = re.compile(r" \[[^]]*\]")
+"""What a terminal leaves out of a cell."""
 
 
 @click.command("compare")
@@ -36,7 +37,7 @@ SHORT = {"first plan [s]": "first [s]", "best plan [s]": "best [s]", "cost, solv
     help="Any PDDL planner: NAME='PLANNER {domain} {problem} {plan}', without a shell. May stand several times.",
 )
 @encoding_option
-@click.option("--budget", type=float, default=30.0, show_default=True, metavar="SECONDS", help="Wall time of a run.")
+@budget_option("of each run")
 @click.option("--buffers", type=int, multiple=True, metavar="B", help="Buffer counts (default: as filed).")
 @click.option("--variant", "variants", multiple=True, metavar="V", help="topple, no-topple, max-topple-M.")
 @click.option("--instances", type=click.IntRange(min=1), metavar="K", help="Only the first K of each suite.")
@@ -113,25 +114,13 @@ def _show(comparison: Any, records: list[RunRecord]) -> None:
         suite, blocks, count, variant = setting
         mine = [*SHORT, "gap to optimum", *comparison.metric_names(runs)]
         short = part[["planner", "coverage", "proven", *mine]].rename(columns=SHORT)
-        short = short.map(lambda cell: str(cell).split(" [")[0])
-        _print(short, f"{suite}: {blocks} blocks, {count} buffers, {variant} (times are medians, costs mean ± std)")
-    _print(comparison.outcome_table(runs), "how the runs ended")
+        short = short.map(lambda cell: INTERVAL.sub("", str(cell)))
+        show(
+            short,
+            f"{suite}: {counted(blocks, 'block')}, {counted(count, 'buffer')}, {variant} "
+            "(times are medians, costs mean ± std)",
+        )
+    show(comparison.outcome_table(runs), "how the runs ended")
     failures = comparison.failure_table(runs)
     if len(failures):
-        _print(failures, "failures")
-
-
-def _print(rows: pd.DataFrame, title: str) -> None:
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
-    console = Console()
-    if not console.is_terminal:
-        console.width = 120
-    table = Table(title=Text(title), title_justify="left")
-    for column in rows.columns:
-        table.add_column(Text(str(column)), overflow="fold", no_wrap=column == "planner")
-    for row in rows.itertuples(index=False):
-        table.add_row(*(Text(str(cell)) for cell in row))
-    console.print(table)
+        show(failures, "failures")

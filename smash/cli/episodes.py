@@ -15,7 +15,7 @@ from smash.experiments.episodes.series import POLICIES, REPLAYS, episode_runs, r
 from smash.experiments.sweeps.display import span
 from smash.problem.errors import Interrupted
 from smash.problem.extras import EXECUTION, require
-from smash.problem.words import one_line
+from smash.problem.words import counted, one_line
 from smash.records.episodes import EpisodeRecord
 from smash.records.files import EPISODES
 from smash.records.writing import Writer
@@ -97,7 +97,9 @@ def command(
         about = span(left * SECONDS_AN_EPISODE / jobs)
         for line in records.set_aside:
             click.echo(one_line(f"{line}: damaged: set aside, its episode is carried out again"), err=True)
-        click.echo(f"{len(runs)} episodes, {left} left, about {about} with {jobs} at a time, by {engine}", err=True)
+        click.echo(
+            f"{counted(len(runs), 'episode')}, {left} left, about {about} with {jobs} at a time, by {engine}", err=True
+        )
         bare = sum(run.key in records.finished and not Path(run.replay).exists() for run in runs if run.replay)
         if bare:
             click.echo(f"{bare} recorded earlier have no replay: `smash execute --replay` makes one", err=True)
@@ -116,7 +118,7 @@ def command(
         run_all(runs, records, jobs, stop, ended)
         if stop.is_set():
             raise Interrupted("interrupted; every finished episode is recorded, start again to do the rest")
-    click.echo(f"{len(runs)} episodes recorded in {records.path}")
+    click.echo(f"{counted(len(runs), 'episode')} recorded in {records.path}")
 
 
 def _end(record: EpisodeRecord) -> str:

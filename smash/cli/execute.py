@@ -7,9 +7,9 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
-from smash.cli.choices import SECONDS, engine_option, noise_option, pace_option, say_engine
+from smash.cli.choices import budget_option, engine_option, noise_option, pace_option, say_engine
 from smash.cli.signals import ended_by_signals
-from smash.experiments.episodes.executors import REPLAN_BUDGET, executor_of
+from smash.experiments.episodes.executors import executor_of
 from smash.problem.extras import EXECUTION, require, require_engine
 from smash.problem.files.documents import require_writable, write_text
 from smash.problem.files.instances import read_instance
@@ -28,14 +28,7 @@ from smash.problem.files.plans import read_plan
 @engine_option
 @click.option("--no-replan", is_flag=True, help="The paper's open pipeline: the first failure ends the episode.")
 @click.option("--replanner", metavar="NAME", help="Planner to replan with (default: the plan's own, else greedy).")
-@click.option(
-    "--budget",
-    type=SECONDS,
-    default=REPLAN_BUDGET,
-    show_default=True,
-    metavar="SECONDS",
-    help="Of each replanning.",
-)
+@budget_option("of each replanning")
 @click.option("--replay", type=click.Path(path_type=Path, dir_okay=False), help="Write a 3D replay as one HTML page.")
 @click.option("--video", type=click.Path(path_type=Path, dir_okay=False), help="Write a film (.mp4 or .gif).")
 @click.option("--video-size", metavar="WxH", help="Of the film [pixels], multiples of 16 (default: 480x368).")

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from smash.cli.choices import SECONDS
+from smash.cli.choices import budget_option
 from smash.experiments.studies.frontier import FrontierPoint, fewest_buffers, frontier
 from smash.planners.registry import DEFAULT, get_planner
 from smash.problem.errors import MalformedFile
 from smash.problem.extras import require
 from smash.problem.files.instances import read_instance
 from smash.problem.sets.suites import read_suite
+from smash.problem.words import counted
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -29,7 +30,7 @@ VARIANTS = ((False, "without topple"), (True, "with topple"))
 @click.option("--most", type=click.IntRange(min=0), default=12, show_default=True, metavar="B", help="Most buffers.")
 @click.option("--planner", default=DEFAULT, show_default=True, metavar="NAME", help="What solves; it should prove.")
 @click.option("--max-topple", type=click.IntRange(min=1), metavar="M", help="At most M blocks in one topple.")
-@click.option("--budget", type=SECONDS, default=30.0, show_default=True, metavar="S")
+@budget_option("of each solve")
 @click.option("--instances", type=click.IntRange(min=1), metavar="K", help="Only the first K of a suite.")
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Write frontier.csv, .png and .pdf here.")
 def command(
@@ -107,7 +108,9 @@ def _instance_tables(points: list[FrontierPoint]) -> list[Table]:
 def _tables(points: list[FrontierPoint], most: int) -> list[Table]:
     """Return the table of a set: per number of buffers and variant the mean cost, and how many need no more."""
     headings = [f"{what}, {name}" for _, name in VARIANTS for what in ("mean actions", "proven", "buffers enough")]
-    table = _table(f"fewest actions over {len({point.instance for point in points})} instances", ["buffers", *headings])
+    table = _table(
+        f"fewest actions over {counted(len({point.instance for point in points}), 'instance')}", ["buffers", *headings]
+    )
     last = {(point.instance, point.topple): point.cost for point in points if point.buffers == most}
     for buffers in range(most + 1):
         cells: list[str] = []

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -11,7 +10,7 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
-from smash.cli.choices import SECONDS, check_command, command_option, encoding_option, without_option
+from smash.cli.choices import budget_option, check_command, command_option, encoding_option, without_option
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.isolation.job import DEFAULT_MEMORY, Job, Report
 from smash.experiments.planning import failure
@@ -40,14 +39,7 @@ from smash.problem.problem import Problem
     help="Topple no more blocks at once than went well in `smash topple-map`, whose estimates.json this is.",
 )
 @without_option
-@click.option(
-    "--budget",
-    type=SECONDS,
-    default=30.0,
-    show_default=True,
-    metavar="SECONDS",
-    help="Wall time, model building and translation included.",
-)
+@budget_option("of the planner")
 @click.option(
     "--memory",
     type=click.IntRange(min=1),
@@ -133,8 +125,6 @@ def command(
     problem = Problem(read_instance(instance), PlanOptions(not no_topple, max_topple or None, without=without))
     settings = Settings(warm_start, horizon, threads, seed, command_line, encoding, solver, objective, robust)
     job = Job(planner, problem, settings, budget, memory)
-    if math.isnan(budget):
-        raise click.BadParameter("nan is no number of seconds", param_hint="--budget")
     model = None if outcomes is None else read_model(outcomes)
     require_writable(out)
     with stopped_by_signals() as stop, _progress(planner) as tell:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from smash.cli.choices import SECONDS
+from smash.cli.choices import budget_option
 from smash.cli.sweep import installed_runs, run_all
 from smash.experiments.studies.scaling import LARGEST, SIZES, scaling_experiment, write_scaling_suites
 from smash.experiments.sweeps.experiment import INSTANCES
@@ -18,14 +18,7 @@ from smash.experiments.sweeps.keep import keep
 @click.option("--planner", "planners", multiple=True, metavar="NAME", help="Repeatable (default: those that scale).")
 @click.option("--largest", type=click.IntRange(min=4), default=SIZES[-1][0], show_default=True, help="Most blocks.")
 @click.option("--count", type=click.IntRange(min=1), default=3, show_default=True, help="Instances a size.")
-@click.option(
-    "--budget",
-    type=SECONDS,
-    default=20.0,
-    show_default=True,
-    metavar="SECONDS",
-    help="Of each run.",
-)
+@budget_option("of each run")
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Runs at a time.")
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the instances.")
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), default="runs/scaling", show_default=True)

@@ -21,7 +21,7 @@ from smash.experiments.sweeps.keep import keep
 from smash.experiments.sweeps.standstill import watched
 from smash.experiments.sweeps.sweep import execute, local_task, sweep
 from smash.problem.files.documents import write_text
-from smash.problem.words import one_line
+from smash.problem.words import counted, one_line
 from smash.records.files import RUNS
 from smash.records.outcomes import OUTCOMES
 from smash.records.runs import RunRecord
@@ -73,12 +73,16 @@ def command(
     width = jobs or read.jobs
     if dry_run:
         hours = sum(run.job.budget for run in runs) / width / 3600
-        click.echo(f"{len(runs)} runs, at most {hours:.1f} h with {width} at a time, to be recorded in {out}")
+        click.echo(
+            f"{counted(len(runs), 'run')}, at most {hours:.1f} h with {width} at a time, to be recorded in {out}"
+        )
         return
     if slurm_script is not None:
         out.mkdir(parents=True, exist_ok=True)  # Slurm writes its log there, and makes no directory
         write_text(slurm_script, batch_script(runs, experiment, out, width))
-        click.echo(f"{slurm_script}: {len(runs)} runs with {width} workers, to be submitted with sbatch")
+        click.echo(
+            f"{slurm_script}: {counted(len(runs), 'run')} with {counted(width, 'worker')}, to be submitted with sbatch"
+        )
         return
     run_all(runs, out, width, dask, partial(keep, read, experiment.parent, out, experiment), redo)
 
@@ -125,7 +129,7 @@ def run_all(
         _say_state(records, runs, kept)
         if kept < len(runs):
             _sweep(runs, records, kept, jobs, dask, stop)
-    click.echo(f"{len(runs)} runs recorded in {records.path}")
+    click.echo(f"{counted(len(runs), 'run')} recorded in {records.path}")
 
 
 def _say_state(records: Writer[RunRecord], runs: list[Run], kept: int) -> None:

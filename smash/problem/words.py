@@ -13,3 +13,8 @@ def visible(text: str) -> str:
 def one_line(text: str) -> str:
     """Return a text as one line: runs of white space as one space, everything else that cannot be printed escaped."""
     return visible(" ".join(text.split()))
+
+
+def counted(number: int, thing: str) -> str:
+    """Return how many there are of something: `1 run`, `2 runs`, `1,000 runs`."""
+    return f"{number:,} {thing}" + ("" if number == 1 else "s")

@@ -91,7 +91,7 @@ def test_pictures_tables_and_words_are_made(tmp_path, variants):
     runs = [record(n, [(0.5, 20 + n)], variant=v, buffers=b) for n in range(3) for v in variants for b in (0, 12)]
     files = make(write(tmp_path, runs), tmp_path / "out")
     assert all(file.stat().st_size > 0 for file in files)
-    assert {file.suffix for file in files} == {".csv", ".md", ".png", ".pdf"}
+    assert {file.suffix for file in files} == {".csv", ".md", ".png", ".pdf", ".tex"}
     assert len(pd.read_csv(tmp_path / "out" / "cells.csv")) == 3 * 2 * len(variants)
 
 

@@ -140,7 +140,7 @@ def test_an_episode_whose_process_ended_is_a_failure_with_the_process_s_words(tm
 
 def test_tables_are_written_as_markdown_and_latex(results):
     files = make(results, results / "tables")
-    assert {file.name for file in files} == {"episodes.csv", "tables.md", "table-multi.tex"}
+    assert {file.name for file in files} == {"episodes.csv", "tables.md", "table-multi.tex", "table-multi-column.tex"}
     assert r"\begin{table*}" in (results / "tables" / "table-multi.tex").read_text()
 
 

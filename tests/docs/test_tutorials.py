@@ -24,3 +24,10 @@ def test_own_planner_to_own_heatmap(tmp_path):
 
 def test_every_tutorial_is_tested():
     assert {page.name for page in TUTORIALS.glob("*.md")} == {"first-plan.md", "own-planner.md"}
+
+
+@pytest.mark.slow
+def test_the_page_on_data(tmp_path):
+    for name in ("examples", "results"):
+        (tmp_path / name).symlink_to(ROOT / name)
+    assert Typed(tmp_path).run(ROOT / "docs" / "dataset.md") >= 5

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from math import log
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
 from smash_analysis.charts.panels import as_it_stands
+from smash_analysis.statistics.intervals import FEWEST_UNITS
 from smash_analysis.tables.cells import grid
 
 if TYPE_CHECKING:
@@ -18,56 +20,85 @@ if TYPE_CHECKING:
 
 SUCCESS_COLOURS = "cividis"
 ACTION_COLOURS = "viridis_r"
-RATIO_COLOURS = "YlOrBr"
 GAIN_COLOURS = "PuOr"
-"""The first three grow evenly in lightness, the last from its middle, so that all kinds of colour vision read them."""
+"""The first two grow evenly in lightness, the last from its middle, so that all kinds of colour vision read them.
+
+The last serves what topple gains and what it saves alike: violet where topple is ahead, white where it is even.
+"""
+FULL, COLUMN = 7.0, 3.4
+"""Width of a figure over both columns of a paper, and over one [in]."""
 
 
-def planner_figure(label: str, suite: str, cells: pd.DataFrame, matched: pd.DataFrame) -> Figure:
-    """Draw one planner on one suite: success (top) and mean actions (bottom), each without and with topple.
+def ratio_place(value: float, reach: float) -> float:
+    """Return where a ratio stands between 1/`reach` (0) and `reach` (1): 1 is the middle, 2 as far from it as 1/2."""
+    return 0.5 + 0.5 * log(value) / log(reach)
 
-    Success of 90 % and more is bold. The right column compares the two: percentage points of success gained, and
-    the ratio of mean actions over the instances that both variants solved in that cell.
+
+def ratio_reach(ratios: Iterable[float]) -> float:
+    """Return how far a scale of ratios reaches on both sides of 1: at least to 1.5."""
+    return max([1.5, *(max(ratio, 1 / ratio) for ratio in ratios if ratio > 0)])
+
+
+def planner_figure(
+    label: str, suite: str, cells: pd.DataFrame, matched: pd.DataFrame, *, narrow: bool = False
+) -> Figure:
+    """Draw one planner on one suite: success and mean actions, each without and with topple.
+
+    Success of 90 % and more is bold. Two more heatmaps compare: percentage points of success gained, and the ratio of
+    mean actions over the instances that both variants solved in that cell; both are white where topple is even with no
+    topple. A cell that stands for fewer than 8 instances is hatched and says how many.
+
+    Args:
+        label: the planner.
+        suite: the set.
+        cells: its `variant_cells`.
+        matched: its `matched_cells`.
+        narrow: two heatmaps side by side, as wide as a column of a paper; else three, as wide as both.
     """
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    mpl.rcParams.update({"font.size": 8, "axes.titlesize": 9, "pdf.fonttype": 42, "hatch.linewidth": 0.6})
+    mpl.rcParams.update({"font.size": 7, "axes.titlesize": 7.5, "pdf.fonttype": 42, "hatch.linewidth": 0.5})
     without, with_ = (cells[cells["variant"] == variant] for variant in ("no-topple", "topple"))
     rows, columns = sorted(cells["buffers"].unique()), sorted(cells["budget"].unique())
 
     def whole(part: pd.DataFrame, column: str) -> pd.DataFrame:
         return grid(part, column).reindex(index=rows, columns=columns)
 
-    width, height = max(3.0, 1.9 + 0.40 * len(columns)), 0.95 + 0.24 * len(rows)
-    figure = Figure(figsize=(3 * width + 0.3, 2 * height + 0.75))
-    figure.set_layout_engine("constrained", w_pad=0.06, h_pad=0.08)
-    axes = figure.subplots(2, 3)
-    figure.suptitle(as_it_stands(f"{label} on {suite} ({_runs(cells)} a cell)"), fontsize=11, fontweight="bold")
+    height = 0.62 + 0.21 * len(rows)
+    figure = Figure(figsize=(COLUMN, 3 * height + 0.3) if narrow else (FULL, 2 * height + 0.3))
+    figure.set_layout_engine("constrained", w_pad=0.03, h_pad=0.04)
+    axes = figure.subplots(*((3, 2) if narrow else (2, 3)), sharey=True)
+    success, actions = (axes[0], axes[1]) if narrow else (axes[0][:2], axes[1][:2])
+    gained, saved = axes[2] if narrow else (axes[0][2], axes[1][2])
+    title = f"{label} on {suite} ({_runs(cells)} a cell)"
+    figure.suptitle(as_it_stands(title), fontsize=8, fontweight="bold")
 
     names = ("without topple", "with topple")
     percent = mpl.colors.Normalize(0, 100)
-    for axis, part, name in zip(axes[0], (without, with_), names, strict=False):
-        _heatmap(axis, whole(part, "success") * 100, percent, SUCCESS_COLOURS, _percent, empty="not run")
-        axis.set_title(as_it_stands(f"Success [%], {name}"))
+    for axis, part, name in zip(success, (without, with_), names, strict=True):
+        values = whole(part, "success") * 100
+        _heatmap(axis, values, percent, SUCCESS_COLOURS, _percent, "not\nrun", whole(part, "runs"))
+        axis.set_title(as_it_stands(f"success [%], {name}"))
     gain = (whole(with_, "success") - whole(without, "success")) * 100
-    reach = max(10.0, float(np.nanmax(np.abs(gain.to_numpy()), initial=0.0)))
-    _heatmap(axes[0][2], gain, mpl.colors.Normalize(-reach, reach), GAIN_COLOURS, _gain, empty="not run")
-    axes[0][2].set_title("Success gained by topple [points]")
+    _heatmap(gained, gain, mpl.colors.Normalize(-100, 100), GAIN_COLOURS, _gain, "not\nrun", whole(matched, "runs"))
+    gained.set_title("success gained [points]")
 
     costs = cells["mean_cost"].dropna()
     scale = mpl.colors.Normalize(*((costs.min(), max(costs.max(), costs.min() + 1)) if len(costs) else (0, 1)))
-    for axis, part, name in zip(axes[1], (without, with_), names, strict=False):
-        _heatmap(axis, whole(part, "mean_cost"), scale, ACTION_COLOURS, lambda v: f"{v:.1f}", empty="no plan")
-        axis.set_title(as_it_stands(f"Mean actions where solved, {name}"))
-    ratios = matched["ratio_common"].dropna()
-    scale = mpl.colors.Normalize(min(1.0, ratios.min()), max(2.0, ratios.max())) if len(ratios) else percent
-    _heatmap(axes[1][2], whole(matched, "ratio_common"), scale, RATIO_COLOURS, lambda v: f"{v:.2f}", empty="no pair")
-    axes[1][2].set_title("Actions without / with topple\n(instances that both solved)")
-    for axis in axes.flat:
-        axis.set_xlabel("task-planning budget [s]")
+    for axis, part, name in zip(actions, (without, with_), names, strict=True):
+        values = whole(part, "mean_cost")
+        _heatmap(axis, values, scale, ACTION_COLOURS, lambda v: f"{v:.1f}", "no\nplan", whole(part, "solved"))
+        axis.set_title(as_it_stands(f"mean actions, {name}"))
+    ratios = whole(matched, "ratio_common")
+    reach = ratio_reach(matched["ratio_common"].dropna())
+    around = mpl.colors.FuncNorm((np.log, np.exp), 1 / reach, reach)
+    _heatmap(saved, ratios, around, GAIN_COLOURS, lambda v: f"{v:.2f}", "no\npair", whole(matched, "common"))
+    saved.set_title("actions without / with")
+    for axis in axes[-1]:
+        axis.set_xlabel("budget [s]")
     for axis in axes[:, 0]:
-        axis.set_ylabel("auxiliary buffers B")
+        axis.set_ylabel("buffers B")
     return figure
 
 
@@ -88,15 +119,21 @@ def _gain(value: float) -> str:
 
 
 def _heatmap(
-    axis: Axes, values: pd.DataFrame, scale: Normalize, colours: str, words: Callable[[float], str], empty: str
+    axis: Axes,
+    values: pd.DataFrame,
+    scale: Normalize,
+    colours: str,
+    words: Callable[[float], str],
+    empty: str,
+    counts: pd.DataFrame,
 ) -> None:
-    """Draw one annotated heatmap; cells without a value are hatched and say why."""
+    """Draw one annotated heatmap; cells without a value are grey and say why, those of few instances are hatched."""
     import matplotlib as mpl
     from matplotlib.patches import Rectangle
 
     colormap = mpl.colormaps[colours]
     numbers = np.ma.masked_invalid(values.to_numpy(dtype=float))
-    image = axis.imshow(numbers, cmap=colormap, norm=scale, aspect="auto", origin="lower")
+    axis.imshow(numbers, cmap=colormap, norm=scale, aspect="auto", origin="lower")
     axis.set_xticks(range(values.shape[1]), [f"{budget:g}" for budget in values.columns])
     axis.set_yticks(range(values.shape[0]), [f"{count:g}" for count in values.index])
     axis.set_xticks(np.arange(-0.5, values.shape[1]), minor=True)
@@ -105,20 +142,24 @@ def _heatmap(
     axis.tick_params(which="both", length=0)
     for spine in axis.spines.values():
         spine.set_visible(False)
+    known = counts.to_numpy(dtype=float)
     for (row, column), value in np.ndenumerate(values.to_numpy(dtype=float)):
+        count = known[row, column]
+        few = not np.isnan(value) and count < FEWEST_UNITS
         if np.isnan(value):
-            box = Rectangle(
-                (column - 0.5, row - 0.5), 1, 1, facecolor="#f4f4f4", edgecolor="#b8b8b8", hatch="////", lw=0
-            )
-            axis.add_patch(box)
-            axis.text(column, row, empty, ha="center", va="center", fontsize=5, color="#555555", bbox=_PAPER)
-        else:
-            colour = ink(*colormap(scale(value))[:3])
-            axis.text(column, row, words(value), ha="center", va="center", fontsize=7, color=colour)
-    axis.figure.colorbar(image, ax=axis, fraction=0.05, pad=0.02).outline.set_visible(False)
-
-
-_PAPER = {"facecolor": "#f4f4f4", "edgecolor": "none", "pad": 0.6}
+            axis.add_patch(Rectangle((column - 0.5, row - 0.5), 1, 1, facecolor="#ececec", lw=0))
+            axis.text(column, row, empty, ha="center", va="center", fontsize=5.5, color="#444444", linespacing=0.9)
+            continue
+        paint = colormap(scale(value))
+        if few:
+            at = (column - 0.5, row - 0.5)
+            pale = (1.0, 1.0, 1.0, 0.55)
+            axis.add_patch(Rectangle(at, 1, 1, facecolor="none", edgecolor=pale, hatch="//////", linewidth=0))
+        text = f"{words(value)}\nn={count:.0f}" if few else words(value)
+        box = {"facecolor": paint, "edgecolor": "none", "pad": 0.4} if few else None
+        size = 5.5 if few else 6.5
+        colour = ink(*paint[:3])
+        axis.text(column, row, text, ha="center", va="center", fontsize=size, color=colour, bbox=box, linespacing=0.95)
 
 
 def ink(red: float, green: float, blue: float) -> str:

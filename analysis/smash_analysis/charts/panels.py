@@ -14,6 +14,8 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 DASHES = ("-", "--", "-.", ":")
 """Okabe and Ito's colours for every kind of colour vision; line styles tell curves apart in grey."""
 GRID_COLOUR = "#dddddd"
+WIDTH, KEYS_A_LINE = 7.0, 4
+"""Of a figure over both columns of a paper [in], and the curves that a line of its legend names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,8 +66,9 @@ class Chart:
     panel_size: tuple[float, float] = (3.3, 2.4)
 
     def figure(self) -> Figure:
-        """Draw all panels and one legend."""
-        figure = _blank(3.4 * len(self.rows[0]) + 1.6, 2.5 * len(self.rows) + 0.5)
+        """Draw all panels and one legend, as wide as both columns of a paper."""
+        below = -(-len(self.legend) // KEYS_A_LINE)
+        figure = _blank(WIDTH, 1.9 * len(self.rows) + 0.3 + 0.16 * below)
         axes = figure.subplots(len(self.rows), len(self.rows[0]), squeeze=False, sharey=True)
         for row, panels in enumerate(self.rows):
             for column, panel in enumerate(panels):
@@ -75,7 +78,8 @@ class Chart:
             axis.set_xlabel(self.across)
         lines = {line.get_label(): line for axis in axes.flat for line in axis.get_lines()}
         named = {name: line for name, line in lines.items() if not str(name).startswith("_")}
-        figure.legend(named.values(), list(map(as_it_stands, named)), loc="outside right upper", frameon=False)
+        keys = list(map(as_it_stands, named))
+        figure.legend(named.values(), keys, loc="outside lower center", ncols=KEYS_A_LINE, frameon=False)
         return figure
 
     def panel_figure(self, panel: Panel) -> Figure:
@@ -93,7 +97,7 @@ def _blank(width: float, height: float, layout: Literal["constrained"] | None = 
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    mpl.rcParams.update({"font.size": 8, "axes.titlesize": 9, "pdf.fonttype": 42})
+    mpl.rcParams.update({"font.size": 7, "axes.titlesize": 7.5, "pdf.fonttype": 42})
     return Figure(figsize=(width, height), layout=layout)
 
 

@@ -95,6 +95,7 @@ class Cell:
         ink: black or white, on that background.
         words: What a screen reader says and the list of runs is titled.
         entries: Rows of the store behind it: the row's number, then a text for each of the grid's own columns.
+        few: How many instances it stands for, where they are so few that it should look like it; else 0.
     """
 
     text: str
@@ -102,6 +103,7 @@ class Cell:
     ink: str
     words: str
     entries: list[list[Any]]
+    few: int = 0
 
 
 @dataclass(slots=True)

@@ -86,7 +86,7 @@ def execution_headlines(records: list[EpisodeRecord]) -> list[str]:
 
 
 def _rate(episodes: pd.DataFrame) -> str:
-    return rate_cell(success_rate(episodes, "success"), "episodes")
+    return rate_cell(success_rate(episodes, "success"), "episode")
 
 
 def _success(episodes: pd.DataFrame) -> GridBlock:

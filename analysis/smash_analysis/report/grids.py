@@ -12,15 +12,16 @@ from smash.records.runs import RunRecord
 from smash_analysis.charts.heatmaps import (
     ACTION_COLOURS,
     GAIN_COLOURS,
-    RATIO_COLOURS,
     SUCCESS_COLOURS,
     ink,
     planner_figure,
+    ratio_place,
+    ratio_reach,
 )
 from smash_analysis.report.blocks import Cell, Grid, GridBlock
 from smash_analysis.report.stores import seconds
 from smash_analysis.statistics.findings import planner_findings, smallest_buffers
-from smash_analysis.statistics.intervals import wilson
+from smash_analysis.statistics.intervals import FEWEST_UNITS, wilson
 from smash_analysis.tables.cells import matched_cells, variant_cells
 from smash_analysis.tables.readings import readings
 from smash_analysis.tables.runs import runs_table
@@ -116,9 +117,8 @@ class _Ablation:
         costs = cells["mean_cost"].dropna()
         low, high = (float(costs.min()), float(costs.max())) if len(costs) else (0.0, 1.0)
         self.success, self.actions = Shades(SUCCESS_COLOURS, 0, 1), Shades(ACTION_COLOURS, low, max(high, low + 1))
-        ratios = matched["ratio_common"].dropna()
-        low, high = (float(ratios.min()), float(ratios.max())) if len(ratios) else (1.0, 2.0)
-        self.ratio, self.gain = Shades(RATIO_COLOURS, min(1, low), max(2, high)), Shades(GAIN_COLOURS, -1, 1)
+        self.reach = ratio_reach(matched["ratio_common"].dropna())
+        self.ratio, self.gain = Shades(GAIN_COLOURS, 0, 1), Shades(GAIN_COLOURS, -1, 1)
 
     def grids(self) -> list[Grid]:
         """Return success and actions per variant, and where there are both, what topple gains and saves."""
@@ -147,7 +147,7 @@ class _Ablation:
         low, high = 100 * row["success_low"], 100 * row["success_high"]
         words = f"{row['solved']} of {row['runs']} with a plan, 95 % interval {low:.0f} to {high:.0f} %"
         text = f"{100 * row['success']:.0f}"
-        return self._cell(text, self.success(row["success"]), words, [variant], buffers, budget)
+        return self._cell(text, self.success(row["success"]), words, [variant], buffers, budget, row["runs"])
 
     def _actions(self, variant: str, buffers: int, budget: float) -> Cell | None:
         row = self.cells.get((variant, buffers, budget))
@@ -157,7 +157,8 @@ class _Ablation:
             return self._cell("", ("", ""), "no plan", [variant], buffers, budget)
         spread = "" if pd.isna(row["std_cost"]) else f" ± {row['std_cost']:.1f}"
         words = f"{row['mean_cost']:.2f}{spread} actions, mean of the {row['solved']} of {row['runs']} solved here"
-        return self._cell(f"{row['mean_cost']:.1f}", self.actions(row["mean_cost"]), words, [variant], buffers, budget)
+        shade = self.actions(row["mean_cost"])
+        return self._cell(f"{row['mean_cost']:.1f}", shade, words, [variant], buffers, budget, row["solved"])
 
     def _gain(self, buffers: int, budget: float) -> Cell | None:
         row = self.matched.get((buffers, budget))
@@ -166,7 +167,7 @@ class _Ablation:
         gain = (row["solved_with"] - row["solved_without"]) / row["runs"]
         words = f"{row['solved_with']} of {row['runs']} with topple, {row['solved_without']} without"
         text = f"{100 * gain:+.0f}" if gain else "0"
-        return self._cell(text, self.gain(gain), words, ["no-topple", "topple"], buffers, budget)
+        return self._cell(text, self.gain(gain), words, ["no-topple", "topple"], buffers, budget, row["runs"])
 
     def _ratio(self, buffers: int, budget: float) -> Cell | None:
         row = self.matched.get((buffers, budget))
@@ -176,14 +177,24 @@ class _Ablation:
         if pd.isna(row["ratio_common"]):
             return self._cell("", ("", ""), "no instance that both solved", both, buffers, budget)
         words = f"{row['ratio_common']:.3f}, on the {row['common']} of {row['runs']} instances that both solved"
-        return self._cell(f"{row['ratio_common']:.2f}", self.ratio(row["ratio_common"]), words, both, buffers, budget)
+        shade = self.ratio(ratio_place(row["ratio_common"], self.reach))
+        return self._cell(f"{row['ratio_common']:.2f}", shade, words, both, buffers, budget, row["common"])
 
     def _cell(
-        self, text: str, colours: tuple[str, str], words: str, variants: Sequence[str], buffers: int, budget: float
+        self,
+        text: str,
+        colours: tuple[str, str],
+        words: str,
+        variants: Sequence[str],
+        buffers: int,
+        budget: float,
+        instances: int = 0,
     ) -> Cell:
+        """Return a cell; `instances` is how many its figure stands for."""
         entries = [entry for v in variants for entry in self.behind.get((v, buffers, budget), [])]
         named = " and ".join(variant_words(v) for v in variants)
-        return Cell(text, *colours, f"{named}, B = {buffers:g}, {budget:g} s: {words}", entries)
+        few = int(instances) if instances < FEWEST_UNITS else 0
+        return Cell(text, *colours, f"{named}, B = {buffers:g}, {budget:g} s: {words}", entries, few)
 
 
 def coverage_grids(records: list[RunRecord], kept: Sequence[int], runs: pd.DataFrame) -> GridBlock:

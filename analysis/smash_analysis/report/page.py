@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from smash.problem.words import counted
 from smash_analysis.charts.panels import COLOURS, Curve
 from smash_analysis.report.appendix import report_command
 from smash_analysis.report.blocks import Block, CardsBlock, ChartBlock, Grid, GridBlock, Section, TableBlock
@@ -88,7 +89,8 @@ def make(results: Path, out: Path, said: Callable[[str], None] = lambda _: None)
     parts, slugs, behind = out / "parts", Slugs(), Behind()
     sections, files, shown = [], [], []
     for source in find_sources(results, out, said):
-        said(f"{source.name}: {len(source.runs)} runs, {len(source.episodes)} episodes, {len(source.trials)} topples")
+        kinds = ((source.runs, "run"), (source.episodes, "episode"), (source.trials, "topple"))
+        said(f"{source.name}: {', '.join(counted(len(records), kind) for records, kind in kinds)}")
         made = section(source)
         slug = slugs(made.name)
         names = [slugs(f"{slug}-{block.name}") for block in made.blocks]

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from smash_analysis.report.blocks import Block, ChartBlock, GridBlock, Listing, Section, TableBlock, Words
-from smash_analysis.tables.writing import latex, markdown, write_csv
+from smash_analysis.tables.latex import tex, write_latex
+from smash_analysis.tables.writing import markdown, write_csv
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -80,11 +81,10 @@ def _pictures(draw: Callable[[], Figure], stem: Path) -> list[Path]:
 def _table(frame: pd.DataFrame, title: str, stem: Path, section: str) -> list[Path]:
     if frame.empty:
         return []
-    files = [stem.with_name(f"{stem.name}.{ending}") for ending in ("md", "tex", "csv")]
+    files = [stem.with_name(f"{stem.name}.{ending}") for ending in ("md", "csv")]
     files[0].write_text(markdown(frame), encoding="utf-8")
-    files[1].write_text(latex(frame, title, f"tab:{section}-{stem.name}"), encoding="utf-8")
-    write_csv(frame, files[2])
-    return files
+    write_csv(frame, files[1])
+    return files + write_latex(frame, title, f"tab:{section}-{stem.name}", stem)
 
 
 def report_markdown(sections: list[Section], files: list[dict[str, list[Path]]], out: Path) -> str:
@@ -116,15 +116,13 @@ def _markdown_block(block: Block, parts: list[Path], out: Path) -> list[str]:
 PREAMBLE = r"""\documentclass[10pt]{article}
 \usepackage[a4paper,margin=18mm]{geometry}
 \usepackage[T1]{fontenc}
-\usepackage{amssymb,booktabs,graphicx,longtable}
+\usepackage{booktabs,graphicx}
 \begin{document}
 """
 
 
 def report_latex(sections: list[Section], files: list[dict[str, list[Path]]], out: Path) -> str:
     """Return a LaTeX document that holds every table and picture of the report."""
-    from smash_analysis.tables.writing import tex
-
     lines = [PREAMBLE]
     for section, made in zip(sections, files, strict=True):
         lines += [rf"\section{{{tex(section.title)}}}", tex(section.lead)]
@@ -141,7 +139,7 @@ def report_latex(sections: list[Section], files: list[dict[str, list[Path]]], ou
                         rf"\caption{{{tex(block.title)}}}",
                         r"\end{figure}",
                     ]
-                elif file.suffix == ".tex":
+                elif file.suffix == ".tex" and not file.stem.endswith("-column"):
                     lines.append(rf"\input{{{inner}}}")
         lines.append(r"\clearpage")
     return "\n".join([*lines, r"\end{document}"]) + "\n"

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from smash.problem.pictures import block_colours, ink_on
 from smash.records.runs import RunRecord
 
 SIDE, GAP, FLOOR = 26, 12, 22
@@ -16,13 +17,15 @@ MOST_BLOCKS = 40
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """One block: where it stands [px], what is written on it, and whether the goal names it."""
+    """One block: where it stands [px], what is written on it, whether the goal names it, and its colours."""
 
     x: int
     y: int
     text: str
     name: str
     aimed: bool
+    colour: str
+    ink: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +72,10 @@ def scenes(document: dict[str, Any]) -> tuple[list[Scene], str]:
     piles += [("hand", [str(document["hand"])])] if document.get("hand") is not None else []
     wanted, aimed, note = _goal(goal, stacks)
     tallest = max([1, *(len(pile) for _, pile in [*piles, *wanted])])
-    return [_scene("Start", piles, aimed, tallest), _scene("Goal", wanted, aimed, tallest)], note
+    colours = block_colours([str(block) for block in document["blocks"]])
+    return [
+        _scene(title, shown, aimed, tallest, colours) for title, shown in (("Start", piles), ("Goal", wanted))
+    ], note
 
 
 def _goal(goal: dict[str, Any], stacks: Sequence[str]) -> tuple[list[tuple[str, list[str]]], set[str], str]:
@@ -97,14 +103,21 @@ def _goal(goal: dict[str, Any], stacks: Sequence[str]) -> tuple[list[tuple[str, 
     return towers, {block for _, tower in towers for block in tower}, note
 
 
-def _scene(title: str, piles: Sequence[tuple[str, list[str]]], aimed: Iterable[str], tallest: int) -> Scene:
+def _scene(
+    title: str,
+    piles: Sequence[tuple[str, list[str]]],
+    aimed: Iterable[str],
+    tallest: int,
+    colours: Mapping[str, str],
+) -> Scene:
     marked = set(aimed)
     boxes, names = [], []
     for column, (location, pile) in enumerate(piles):
         left = GAP // 2 + column * (SIDE + GAP)
         names.append(Pile(left + SIDE // 2, _short(location, 5), location))
         for level, block in enumerate(pile):
-            boxes.append(Box(left, (tallest - 1 - level) * SIDE + 2, _short(block, 4), block, block in marked))
+            up, colour = (tallest - 1 - level) * SIDE + 2, colours[block]
+            boxes.append(Box(left, up, _short(block, 4), block, block in marked, colour, ink_on(colour)))
     said = "; ".join(f"{location}: {', '.join(pile) or 'empty'}" for location, pile in piles)
     width = max(1, len(piles)) * (SIDE + GAP)
     return Scene(title, width, tallest * SIDE + FLOOR, boxes, names, f"{title}, each pile from the bottom: {said}")

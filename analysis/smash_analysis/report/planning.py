@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pandas as pd
 
+from smash.problem.words import counted
 from smash_analysis.charts.curves import anytime_chart, coverage_chart, gap_chart
 from smash_analysis.comparison import comparable, compared, comparison_table, failure_table, optima, outcome_table
 from smash_analysis.report.blocks import Block, CardsBlock, ChartBlock, TableBlock, Words
@@ -239,9 +240,9 @@ def _effect_words(effect: Effect) -> str:
     if not pair.units or pd.isna(pair.ratio):
         return ""
     where = f" on {about['suite']}" if "suite" in about else ""
-    where += f" with {about['buffers']} buffers" if "buffers" in about else ""
+    where += f" with {counted(int(about['buffers']), 'buffer')}" if "buffers" in about else ""
     return (
         f"Proven optima{where}: {pair.left_mean:.1f} actions without topple, {pair.right_mean:.1f} "
-        f"{variant_words(about['variant'])} on the {pair.units} instances where both are proven; "
+        f"{variant_words(about['variant'])} on the {counted(pair.units, 'instance')} where both are proven; "
         f"{with_spread(pair.mean, pair.interval, pair.units)} saved, ratio {pair.ratio:.2f}."
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
+from smash.problem.words import counted
 from smash_analysis.statistics.intervals import Paired, is_range
 
 WIDTH, HEIGHT, MARGIN = 190.0, 22.0, 6.0
@@ -25,7 +26,7 @@ def _strip(pair: Paired, low: float, high: float) -> str:
     middle = HEIGHT / 2
     left, right = pair.interval
     spread = "range" if is_range(pair.units) else "95 % interval"
-    words = f"mean {pair.mean:.1f}, {spread} {left:.1f} to {right:.1f}; {pair.units} instances"
+    words = f"mean {pair.mean:.1f}, {spread} {left:.1f} to {right:.1f}; {counted(pair.units, 'instance')}"
     dots = [
         f'<circle cx="{at(value):.1f}" cy="{middle:.1f}" r="{min(5.0, 2.0 + 0.4 * count):.1f}"/>'
         for value, count in sorted(Counter(pair.differences.tolist()).items())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import pandas as pd
 
 from smash_analysis.statistics.effects import Effect
@@ -15,21 +17,27 @@ def topple_table(effects: list[Effect]) -> pd.DataFrame:
     for effect in effects:
         pair = effect.pair
         fewer, equal, more = pair.tally
+        about = {names.get(name, name): value for name, value in effect.about.items()}
         rows.append(
             {
-                **{names.get(name, name): value for name, value in effect.about.items()},
-                "solved without": rate_cell(pair.left_rate, "problems"),
-                "solved with": rate_cell(pair.right_rate, "problems"),
-                "common instances": pair.units,
-                "without": figure(pair.left_mean),
-                "with": figure(pair.right_mean),
-                "saved, mean [95 %] (range)": with_spread(pair.mean, pair.interval, pair.units),
+                **_first(about, {"saved, mean [95 %] (range)": with_spread(pair.mean, pair.interval, pair.units)}),
                 "saved, median [IQR]": median_iqr(pd.Series(pair.differences), 1),
                 "ratio [95 %] (range)": with_spread(pair.ratio, pair.ratio_interval, pair.units, 2),
+                "without": figure(pair.left_mean),
+                "with": figure(pair.right_mean),
                 "shorter / same / longer": f"{fewer} / {equal} / {more}",
+                "common instances": pair.units,
+                "solved without": rate_cell(pair.left_rate, "problem"),
+                "solved with": rate_cell(pair.right_rate, "problem"),
             }
         )
     return pd.DataFrame(rows)
+
+
+def _first(about: Mapping[str, object], saved: Mapping[str, object]) -> dict[str, object]:
+    """Return what names a row with what was saved behind its first column: where a narrow page shows it."""
+    (first, *others) = about.items()
+    return dict([first, *saved.items(), *others])
 
 
 def planner_table(effects: list[Effect], reference: str) -> pd.DataFrame:
@@ -41,8 +49,8 @@ def planner_table(effects: list[Effect], reference: str) -> pd.DataFrame:
         rows.append(
             {
                 **effect.about,
-                "solved": rate_cell(pair.left_rate, "problems"),
-                f"solved, {reference}": rate_cell(pair.right_rate, "problems"),
+                "solved": rate_cell(pair.left_rate, "problem"),
+                f"solved, {reference}": rate_cell(pair.right_rate, "problem"),
                 "common instances": pair.units,
                 "actions": figure(pair.left_mean),
                 f"actions, {reference}": figure(pair.right_mean),

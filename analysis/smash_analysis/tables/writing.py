@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from math import isnan
 from pathlib import Path
 
 import pandas as pd
 
+from smash.problem.words import counted
 from smash_analysis.statistics.intervals import FEWEST_UNITS, Rate, is_range, wilson
 
 
@@ -27,6 +29,18 @@ def median_iqr(values: pd.Series[float], digits: int = 2) -> str:
         return "–"
     low, middle, high = known.quantile([0.25, 0.5, 0.75])
     return f"{middle:.{digits}f} [{low:.{digits}f}, {high:.{digits}f}]"
+
+
+def of_seconds(show: Callable[[pd.Series[float]], str], values: pd.Series[float], digits: int = 2) -> str:
+    """Return what `show` makes of seconds; of milliseconds, which it then says, where the middle would round to zero.
+
+    Args:
+        show: makes a text of numbers (`median_iqr`, `mean_std`).
+        values: seconds.
+        digits: that `show` shows behind the point.
+    """
+    small = 0 < values.median() < 0.5 * 10.0**-digits
+    return f"{show(1000 * values)} ms" if small else show(values)
 
 
 def share(successes: int, trials: int) -> str:
@@ -67,11 +81,11 @@ RATES = (
 
 
 def rate_cell(rate: Rate, trials: str) -> str:
-    """Return a rate with its 95 % interval, the number of instances and of trials (in words: episodes, say)."""
+    """Return a rate with its 95 % interval, the number of instances and of trials (in a word for one: episode, say)."""
     if not rate.units:
         return "–"
     low, high = rate.interval
-    return f"{rate.mean:.2f} [{low:.2f}, {high:.2f}] of {rate.units} ({rate.trials} {trials})"
+    return f"{rate.mean:.2f} [{low:.2f}, {high:.2f}] of {rate.units} ({counted(rate.trials, trials)})"
 
 
 _NUMBERS = re.compile(r"[-+]?[\d.][\d.,%±()\[\] –to-]*")
@@ -120,7 +134,7 @@ def ablation_table(runs: pd.DataFrame) -> pd.DataFrame:
                 "runs": len(part),
                 "success": share(int(part["solved"].sum()), len(part)),
                 "actions, solved runs (mean ± std)": mean_std(part["cost"]),
-                "first plan [s] (median [IQR])": median_iqr(part["first_seconds"]),
+                "first plan [s] (median [IQR])": of_seconds(median_iqr, part["first_seconds"]),
                 "proven optimal": f"{part['proven'].sum()}/{len(part)}",
             }
         )
@@ -141,47 +155,3 @@ def markdown(table: pd.DataFrame) -> str:
 def _cell(text: str) -> str:
     """Return a text as a cell of Markdown shows it."""
     return " ".join(text.split()).replace("\\", "\\\\").replace("|", "\\|").replace("<", "&lt;")
-
-
-LONG_TABLE = 40
-"""A table with more rows than this is broken over pages."""
-TEX = {
-    "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
-    "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "±": r"$\pm$", "≤": r"$\le$", "×": r"$\times$", "–": "--",
-    "✓": r"\checkmark", "“": "``", "”": "''", "…": r"\dots{}",
-}  # fmt: skip
-
-
-def tex(text: str) -> str:
-    """Return a text as LaTeX shows it as it stands."""
-    return "".join(TEX.get(letter, letter) for letter in text)
-
-
-def latex(table: pd.DataFrame, title: str, label: str) -> str:
-    """Return a table as LaTeX (booktabs), in the paper's layout: rows with the same first cell are one group.
-
-    A long one is a `longtable`, any other a float that is no wider than the text.
-    """
-    columns = "ll" + "c" * (len(table.columns) - 2)
-    head = " & ".join(tex(str(column)) for column in table.columns) + r" \\"
-    body: list[str] = []
-    last = ""
-    groups = table.iloc[:, 0].nunique() < len(table)
-    for row in table.itertuples(index=False):
-        cells = [str(cell) for cell in row]
-        if groups:
-            body += [r"\midrule"] if cells[0] != last and body else []
-            last, cells[0] = cells[0], "" if cells[0] == last else cells[0]
-        body.append(" & ".join(tex(cell) for cell in cells) + r" \\")
-    caption, mark = rf"\caption{{{tex(title)}}}", rf"\label{{{label}}}"
-    if len(body) > LONG_TABLE:
-        start = [r"\begingroup\tiny", rf"\begin{{longtable}}{{{columns}}}", rf"{caption}{mark} \\", r"\toprule", head]
-        start += [r"\midrule", r"\endhead"]
-        return "\n".join([*start, *body, r"\bottomrule", r"\end{longtable}", r"\endgroup"]) + "\n"
-    start = [
-        r"\begin{table*}[t]",
-        r"\centering\small",
-        r"\resizebox{\ifdim\width>\textwidth\textwidth\else\width\fi}{!}{%",
-    ]
-    start += [rf"\begin{{tabular}}{{{columns}}}", r"\toprule", head, r"\midrule"]
-    return "\n".join([*start, *body, r"\bottomrule", r"\end{tabular}}", caption, mark, r"\end{table*}"]) + "\n"

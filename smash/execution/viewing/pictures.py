@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import colorsys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +16,7 @@ from smash.execution.physics.pybullet_world import ARM, FINGERS, connect
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.viewing.recording import Recording
 from smash.motion.robot import panda_urdf
+from smash.problem.pictures import PALETTE
 
 SIZE = (960, 640)
 """Width and height of a picture [pixels]."""
@@ -46,8 +46,9 @@ LOOKED_AT = (0.0, -0.02, 0.20)
 
 
 def block_colours(count: int) -> list[tuple[float, float, float]]:
-    """Red, green, blue in 0..1 for each block: hues spread evenly, neighbours told apart by brightness too."""
-    return [colorsys.hsv_to_rgb((index * 0.618) % 1.0, 0.72 - 0.2 * (index % 2), 0.92) for index in range(count)]
+    """Red, green, blue in 0..1 for each block, in order: the colours that it has in every other picture."""
+    paints = [PALETTE[number % len(PALETTE)] for number in range(count)]
+    return [(int(p[1:3], 16) / 255, int(p[3:5], 16) / 255, int(p[5:7], 16) / 255) for p in paints]
 
 
 class Stage:

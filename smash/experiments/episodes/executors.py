@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from smash.execution.scene.tabletop import Tabletop
     from smash.records.episodes import Performed
 
-REPLAN_BUDGET = 10.0
+REPLAN_BUDGET = 30.0
 """Wall time of each replanning, where none is given [s]."""
 
 

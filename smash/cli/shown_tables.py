@@ -1,0 +1,51 @@
+"""Tables on a terminal: where one is wider than the terminal its columns go on below, and nothing is cut."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from rich.table import Table
+
+WIDE = 120
+"""Columns of what is no terminal, unless COLUMNS says another number."""
+
+
+def show(rows: pd.DataFrame, title: str) -> None:
+    """Print a table whose first column names its rows; a part that does not fit goes on below under the same names.
+
+    Args:
+        rows: what to print.
+        title: stands above.
+    """
+    from rich.console import Console
+    from rich.measure import Measurement
+
+    console = Console()
+    if not console.is_terminal and "COLUMNS" not in os.environ:
+        console.width = WIDE
+    names = list(range(rows.shape[1]))
+    parts: list[list[int]] = [names[:1]]
+    for column in names[1:]:
+        wider = [*parts[-1], column]
+        needs = Measurement.get(console, console.options.update(width=10_000), _table(rows.iloc[:, wider], "")).maximum
+        if needs > console.width and len(parts[-1]) > 1:
+            parts.append([0, column])
+        else:
+            parts[-1] = wider
+    for number, part in enumerate(parts):
+        console.print(_table(rows.iloc[:, part], f"{title}, continued" if number else title))
+
+
+def _table(rows: pd.DataFrame, title: str) -> Table:
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(title=Text(title) if title else None, title_justify="left")
+    for number, column in enumerate(rows.columns):
+        table.add_column(Text(str(column)), overflow="fold", no_wrap=not number)
+    for row in rows.itertuples(index=False):
+        table.add_row(*(Text(str(cell)) for cell in row))
+    return table

@@ -1,0 +1,134 @@
+"""The data set: made, described, read back, asked and scored."""
+
+import json
+
+import pytest
+
+from smash.cli import smash as command
+from smash.experiments.dataset.entries import paper_entries
+from smash.experiments.dataset.loading import load_dataset
+from smash.experiments.dataset.package import write_dataset
+from smash.experiments.dataset.prompts import prompt_in_pddl, prompt_in_words
+from smash.experiments.dataset.scoring import answer_text, answered_actions, score, summary
+from smash.problem import Law, OnGoal, Pick, Place, PlanOptions, Topple, Unsupported, make_instance, read_instance
+from smash.problem.certificate import proven_bound
+from smash.problem.errors import MalformedFile
+from tests.docs.blocks import ROOT
+
+FIGURE_1 = read_instance(ROOT / "examples" / "figure1.json")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A small data set: the first instance of multi-4 with 0 to 12 buffers, with and without topple."""
+    out = tmp_path_factory.mktemp("dataset")
+    write_dataset(paper_entries(["multi-4"], 1), out)
+    return out
+
+
+@pytest.fixture(scope="module")
+def dataset(folder):
+    return load_dataset(folder)
+
+
+def test_every_problem_has_a_legal_plan_of_its_proven_cost(dataset):
+    assert len(dataset.problems) == 26
+    for name, entry in dataset.problems.items():
+        assert name == entry.name
+        assert entry.status == "optimal"
+        assert Law(entry.instance, entry.options).check(entry.actions).cost == entry.cost == entry.lower_bound
+
+
+def test_certificates_prove_what_they_say(dataset):
+    assert dataset.certificates
+    entry = dataset.problems["multi-4-000/B12/topple"]
+    proof = dataset.certificates["multi-4-000/topple"]
+    assert proven_bound(entry.instance, entry.options, proof) == entry.cost
+
+
+def test_the_metadata_is_croissant(folder):
+    mlcroissant = pytest.importorskip("mlcroissant")
+    described = mlcroissant.Dataset(str(folder / "croissant.json"))
+    assert not described.metadata.ctx.issues.errors
+    assert not described.metadata.ctx.issues.warnings
+    for records, count in (("problems", 26), ("plans", 26), ("instances", 1), ("certificates", 2)):
+        assert len(list(described.records(records))) == count
+
+
+def test_a_damaged_data_set_is_refused_by_line(folder, tmp_path):
+    for file in folder.iterdir():
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    (tmp_path / "plans.jsonl").write_text('{"problem": "x"}\n')
+    with pytest.raises(MalformedFile, match=r"plans\.jsonl:1"):
+        load_dataset(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        'Sure: [["topple", "s1", 2], ["pick", "b1", "s1"], ["place", "b1", "s3"]]. That is it.',
+        "```json\n[[1]]\n```\nno, rather\n" + answer_text([Topple("s1", 2), Pick("b1", "s1"), Place("b1", "s3")]),
+        "1. topple(s1, 2)\n2. pick b1 s1\n3. Place b1 s3",
+        "- (topple s1 2)\n- (pick b1 s1)\n- (place b1 s3)",
+    ],
+)
+def test_a_plan_is_found_in_what_a_model_says(answer):
+    assert answered_actions(answer) == (Topple("s1", 2), Pick("b1", "s1"), Place("b1", "s3"))
+
+
+def test_answers_are_scored_by_legality_and_gap(dataset):
+    entry = dataset.problems["multi-4-000/B12/no-topple"]
+    best = score(entry, entry.actions)
+    again = score(entry, answer_text([*entry.actions, *_there_and_back(entry)]))
+    none, wrong = score(entry, "I cannot."), score(entry, '[["pick", "nobody", "s1"]]')
+    assert (best.legal, best.gap, again.cost) == (True, 0.0, entry.cost + 4)
+    assert not none.legal
+    assert "step 1" in wrong.reason
+    lines = summary([best, again, none, wrong])
+    assert lines[:2] == ["legal: 2 of 4", "optimal: 1 of 4"]
+
+
+def _there_and_back(entry):
+    block, home = entry.actions[-1].block, entry.actions[-1].target
+    aside = entry.instance.buffers[-1]
+    return Pick(block, home), Place(block, aside), Pick(block, aside), Place(block, home)
+
+
+def test_answers_in_pddl_are_read_by_the_encoding_of_the_prompt(dataset):
+    pytest.importorskip("smash_baselines.steps")
+    from smash_baselines.steps import steps_of
+
+    from smash.experiments.dataset.prompts import pddl_task
+
+    for variant in ("topple", "no-topple"):
+        entry = dataset.problems[f"multi-4-000/B2/{variant}"]
+        steps = steps_of(entry.actions, pddl_task(entry.instance, entry.options))
+        answer = "\n".join(f"({' '.join(step)})" for step in steps)
+        assert score(entry, f"The plan:\n{answer}\n", pddl=True).cost == entry.cost
+        assert not score(entry, "(nonsense b1)", pddl=True).legal
+
+
+def test_a_prompt_tells_the_rules_that_hold():
+    words = prompt_in_words(FIGURE_1)
+    assert '"b1" is at height 1 of "s3"' in words
+    assert "topple" in words
+    without = prompt_in_words(FIGURE_1, PlanOptions(topple=False))
+    assert '"topple"' not in without
+    assert "at most 2" in prompt_in_words(FIGURE_1, PlanOptions(max_topple=2))
+    relations = make_instance({"s1": ["a", "b"]}, OnGoal({"a": "b"}, bottom=("b",)), buffers=1)
+    assert '"a" lies directly on "b"' in prompt_in_words(relations)
+    assert "(define (problem" in prompt_in_pddl(FIGURE_1)
+    with pytest.raises(Unsupported):
+        prompt_in_words(read_instance(ROOT / "examples" / "scoop.json"))
+
+
+def test_the_commands_ask_and_score(folder, dataset, tmp_path, capsys):
+    entry = dataset.problems["multi-4-000/B0/topple"]
+    answers = tmp_path / "answers.jsonl"
+    answers.write_text(json.dumps({"problem": entry.name, "answer": answer_text(entry.actions)}) + "\n")
+    command.main(["score", str(folder), str(answers), "--out", str(tmp_path / "s.jsonl")], standalone_mode=False)
+    assert "optimal: 1 of 1" in capsys.readouterr().out
+    assert json.loads((tmp_path / "s.jsonl").read_text())["gap"] == 0
+    answers.write_text('{"problem": "nowhere", "answer": ""}\n')
+    with pytest.raises(MalformedFile, match=r"answers\.jsonl:1"):
+        command.main(["score", str(folder), str(answers)], standalone_mode=False)
