@@ -19,6 +19,7 @@ SAID_ELSEWHERE = {
     "cmeel-qhull": "Qhull",
     "configspace": "BSD-3-Clause",
     "didppy": "MIT OR Apache-2.0",
+    "mlcroissant": "Apache-2.0",
     "uv": "MIT OR Apache-2.0",
 }
 """Of packages whose metadata does not say it: what stands in their repositories."""
