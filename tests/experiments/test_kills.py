@@ -198,16 +198,18 @@ def cluster(tmp_path, number):
         time.sleep(0.05)
     how = ("--nworkers", 2, "--nthreads", 1, "--memory-limit", 0, "--death-timeout", 60)
     where = ("--scheduler-file", file, "--no-dashboard", "--local-directory", tmp_path / "local")
-    workers = start("distributed.cli.dask_worker", *how, *where)
+    # Where a worker is killed before it is up, its nanny gives up: what starts workers starts them again.
+    ever = ["bash", "-c", 'while :; do "$@"; sleep 0.2; done', "bash", sys.executable, "-m"]
+    nothing = {"stderr": subprocess.DEVNULL, "stdout": subprocess.DEVNULL}
+    words = [*ever, "distributed.cli.dask_worker", *map(str, (*how, *where))]
+    workers = subprocess.Popen(words, start_new_session=True, **nothing)
     try:
         yield file
     finally:
-        for process in (workers, scheduler):
-            process.terminate()
-            with suppress(subprocess.TimeoutExpired):
-                process.wait(20)
-            process.kill()
-            process.wait()
+        os.killpg(workers.pid, signal.SIGKILL)
+        scheduler.kill()
+        workers.wait()
+        scheduler.wait()
 
 
 def test_forty_kills_on_dask(experiment, tmp_path):
