@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Hashable, Iterable
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Generic, Self
@@ -45,7 +46,7 @@ class Writer(Generic[R]):
             self.earlier: list[R]
             self.set_aside: list[str]
             self.earlier, self.set_aside = self._repaired(directory, kind) if self.path.is_file() else ([], [])
-            self._file = open(self.path, "ab")  # noqa: SIM115 - open until `__exit__`
+            self._file = open(self.path, "ab", buffering=0)  # noqa: SIM115 - open until `__exit__`
         except OSError as error:
             self._lock.close()
             raise MalformedFile(str(self.path), f"cannot be written: {error.strerror}") from None
@@ -90,11 +91,15 @@ class Writer(Generic[R]):
         """
         if record.key in self.finished:
             return
+        before = os.fstat(self._file.fileno()).st_size
+        left = memoryview(json.dumps(record.document).encode() + b"\n")
         try:
-            self._file.write(json.dumps(record.document).encode() + b"\n")
-            self._file.flush()
+            while left:
+                left = left[self._file.write(left) :]
             os.fsync(self._file.fileno())
         except OSError as error:
+            with suppress(OSError):
+                self._file.truncate(before)  # no half of a record stays
             raise MalformedFile(str(self.path), f"cannot be written: {error.strerror}") from None
         self.finished.add(record.key)
 

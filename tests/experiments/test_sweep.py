@@ -166,15 +166,44 @@ def test_damage_elsewhere_is_set_aside_with_its_line_and_its_run_done_again(expe
     assert len(records(out)) == 2
 
 
-def test_runs_that_ended_so_are_done_again_where_it_is_asked_for(experiment, tmp_path):
-    file, out = experiment(["bare", "raises"]), tmp_path / "out"
+def test_runs_that_ended_so_are_done_again_where_it_is_asked_for(experiment, tmp_path, monkeypatch):
+    monkeypatch.setenv("STARTS", str(tmp_path / "starts"))
+    file, out = experiment(["bare", "raises", "kills-its-guardian"]), tmp_path / "out"
     sweep(file, out)
     before = records(out)
+    assert {record["reason"] for record in before if record["planner"] == "kills-its-guardian"} == {
+        "the process that guards the run was killed"
+    }
     ended = sweep(file, out, "--redo", "crashed")
     count = sum(record["outcome"] == "crashed" for record in before)
     assert f"{count} recorded runs are done again" in ended.stderr
     assert len((out / "runs.redone").read_text().splitlines()) == count > 0
     assert sorted(record["key"] for record in records(out)) == sorted(record["key"] for record in before)
+
+
+def test_a_full_disk_names_the_file_and_loses_nothing_finished(experiment, tmp_path):
+    file, out = experiment(["bare"], count=6), tmp_path / "out"
+    full = ["bash", "-c", 'ulimit -f 9; exec "$@"', "bash", *command(file, out)]
+    ended = subprocess.run(full, capture_output=True, text=True, timeout=100)
+    assert ended.returncode == 2
+    assert ended.stderr.splitlines()[-1] == f"smash: {out / RUNS.name}: cannot be written: File too large"
+    assert "Traceback" not in ended.stderr
+    kept = whole_lines(out)
+    assert 0 < len(kept) < 6
+    assert sweep(file, out).returncode == 0
+    assert kept < whole_lines(out)
+    assert len({record["key"] for record in records(out)}) == len(records(out)) == 6
+
+
+def test_where_no_scratch_folder_can_be_made_the_folder_is_named_and_no_planner_blamed(experiment, tmp_path):
+    file, out = experiment(["bare"]), tmp_path / "out"
+    code = "import sys, tempfile; tempfile.tempdir = '/nowhere'; from smash.cli import main; main()"
+    words = [sys.executable, "-c", code, *command(file, out)[3:]]
+    ended = subprocess.run(words, capture_output=True, text=True, timeout=100)
+    assert ended.returncode == 2
+    assert "/nowhere/smash-run-" in ended.stderr.splitlines()[-1]
+    assert "a run cannot write there: No such file or directory" in ended.stderr
+    assert not records(out)
 
 
 def test_two_sweeps_on_one_directory_are_refused(experiment, tmp_path):
@@ -193,7 +222,8 @@ def test_nothing_runs_where_the_file_is_bad(experiment, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-def test_no_scheduler_at_the_address_is_one_line(experiment, tmp_path):
-    ended = sweep(experiment(["bare"]), tmp_path / "out", "--dask", "nonsense://x")
+@pytest.mark.parametrize("address", ["nonsense://x", "tls://127.0.0.1:9"])
+def test_no_scheduler_at_the_address_is_one_line(experiment, tmp_path, address):
+    ended = sweep(experiment(["bare"]), tmp_path / "out", "--dask", address)
     assert ended.returncode == 2
     assert ended.stderr.count("\n") == 1

@@ -23,6 +23,8 @@ from pathlib import Path
 from time import monotonic, sleep
 from typing import IO
 
+import psutil
+
 from smash.experiments.isolation.job import Job
 from smash.experiments.isolation.leftovers import Left, clear_away
 from smash.experiments.isolation.server import keep_only, request_line, search_path, serve
@@ -51,20 +53,32 @@ class Guardian:
         self.stdin: IO[bytes] = os.fdopen(stdin, "wb")
         self.stdout: IO[bytes] = os.fdopen(stdout, "rb", 0)
         self._status = status
-        self._pid = pid
+        self._process: psutil.Process | None = None
+        with suppress(psutil.NoSuchProcess):  # it may have been killed already
+            self._process = psutil.Process(pid)
 
     def wait(self, seconds: float) -> bool | None:
         """Return whether it ended well and left nothing, or None where it has not ended after so many seconds.
 
-        Where the server was killed meanwhile nobody knows: False.
+        Where the server was killed meanwhile nobody knows whether all went well: False.
         """
         line = _line(self._status, seconds)
+        if line == b"" and self._process is not None:
+            with suppress(psutil.NoSuchProcess):
+                try:
+                    self._process.wait(seconds)
+                except psutil.TimeoutExpired:
+                    return None
         return None if line is None else line == b"0"
 
     def kill(self) -> None:
-        """End it."""
-        with suppress(ProcessLookupError):
-            os.kill(self._pid, signal.SIGKILL)
+        """End it, and what is below it."""
+        if self._process is None:
+            return
+        with suppress(psutil.NoSuchProcess):
+            for process in (*self._process.children(recursive=True), self._process):
+                with suppress(psutil.NoSuchProcess):
+                    process.kill()
 
     def close(self) -> None:
         """Close its files."""
