@@ -7,7 +7,7 @@ SCENES := friction-0.10 friction-0.30 friction-0.40 friction-0.50
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help install install-all lock lock-tool licences clean test test-slow test-timing lint ci suites ablation ablation-full bench scaling compare compare-full best-known tables tables-full friction topple-map scoop reproduce reproduce-full results physics
+.PHONY: help install install-all lock lock-tool licences clean test test-slow test-timing lint ci suites ablation ablation-full bench bench-records scaling compare compare-full best-known tables tables-full friction topple-map scoop reproduce reproduce-full results physics
 
 help: ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 22
@@ -101,6 +101,9 @@ topple-map: needs-analysis-execution physics ## where toppled blocks land, per c
 
 bench: needs-gurobi ## first plans, proofs, HiGHS against Gurobi, hundreds of blocks: the README's tables (3 minutes)
 	$(BIN)/python -m smash.experiments.studies.benchmark
+
+bench-records: needs-parquet ## what checking, exporting and reporting 45,000 runs takes (minutes)
+	$(BIN)/python -m smash.experiments.studies.records_at_scale
 
 scaling: needs-analysis ## time over 4 to 1,000 blocks, per planner: curves and exponents (hours; it can be resumed)
 	$(BIN)/smash scaling --out runs/scaling

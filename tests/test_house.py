@@ -34,8 +34,8 @@ ORDERS = {
         *("layered", "flow", "former", "portfolio"),
     ),
     "smash.records": (
-        *("outcomes", "locking", "variants", "claims", "record", "runs", "episodes", "trials", "files", "reading"),
-        *("writing", "believing"),
+        *("outcomes", "locking", "variants", "claims", "record", "runs", "episodes", "trials", "files"),
+        *("sharing", "reading", "writing", "believing"),
     ),
     "smash.experiments": (
         *("environment", "isolation", "sweeps", "episodes", "best_known", "studies"),
