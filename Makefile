@@ -149,6 +149,9 @@ proofs: needs-analysis ## the 3,120 problems of the committed sets (13 buffer co
 beside-greedy: needs-planning ## smash beside greedy alone on sixty stated problems of 50 to 2,000 blocks, at 1 and 10 s (20 minutes)
 	$(BIN)/python -m smash.experiments.studies.beside_greedy --out runs/beside-greedy.md
 
+bench-records: needs-parquet ## what checking, exporting and reporting 45,000 runs takes (minutes)
+	$(BIN)/python -m smash.experiments.studies.records_at_scale
+
 scaling: needs-analysis ## time over 4 to 1,000 blocks, per planner: curves and exponents (hours; it can be resumed)
 	$(BIN)/smash scaling --out runs/scaling
 	$(BIN)/python -m smash_analysis.scaling runs/scaling

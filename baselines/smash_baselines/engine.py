@@ -12,7 +12,6 @@ from time import monotonic
 from typing import Any, ClassVar, Self
 
 from smash.planners.protocol import OnIncumbent, ProblemPlanner, Settings, SolveLog
-from smash.problem.actions.registry import FAMILY
 from smash.problem.errors import IllegalAction, PlannerCrashed, PlannerOutOfMemory, Unsupported
 from smash.problem.feasibility import why_contradictory
 from smash.problem.model import Instance
@@ -21,6 +20,7 @@ from smash.problem.problem import Problem
 from smash_baselines.encodings import COMPOSED, UnknownEncoding, encoding_names, get_encoding, unsupported_reason
 from smash_baselines.engines.outcomes import Outcome
 from smash_baselines.engines.process import MEMORY_LIMIT
+from smash_baselines.engines.tested import beyond_tests, most_sum
 from smash_baselines.facts import named_blocks, trim_buffers
 from smash_baselines.goal_words import told
 from smash_baselines.names import Step
@@ -31,7 +31,12 @@ from smash_baselines.task import PddlTask, compile_instance
 
 @dataclass(slots=True)
 class Run:
-    """One run of an engine on one task: its limits, the plans that it reports, what it measures."""
+    """One run of an engine on one task: its limits, the plans that it reports, what it measures.
+
+    Attributes:
+        infeasible: whether the engine says that there is no plan.
+        doubt: why what it proves is only its claim (`details` keep it); None where it is believed.
+    """
 
     task: PddlTask
     log: SolveLog
@@ -40,6 +45,7 @@ class Run:
     deadline: float
     memory: int
     infeasible: bool = False
+    doubt: str | None = None
 
     @property
     def details(self) -> dict[str, Any]:
@@ -54,8 +60,15 @@ class Run:
             self.log.refusals.append(f"{self.origin}: {error}")
 
     def raise_bound(self, bound: int) -> None:
-        """Take a lower bound that the engine proved."""
-        self.log.prove(bound, self.origin)
+        """Take a lower bound that the engine proved; where it is not believed it is noted as a claim."""
+        if self.doubt is None:
+            self.log.prove(bound, self.origin)
+        else:
+            self.claim({"lower_bound": max(bound, self.details.get("claimed", {}).get("lower_bound", bound))})
+
+    def claim(self, said: dict[str, Any]) -> None:
+        """Note what the engine says and nobody has to believe, with the reason."""
+        self.details["claimed"] = {**self.details.get("claimed", {}), **said, "not_believed": self.doubt}
 
 
 MOST_SUM = 2**31 - 1
@@ -63,15 +76,8 @@ MOST_SUM = 2**31 - 1
 
 
 def beyond_integers(instance: Instance) -> str | None:
-    """Return why the costs of an instance are beyond what engines can sum, or None.
-
-    Asked is what an engine may come to add: two of the dearest moves for each block, a topple with each.
-    """
-    costs = instance.costs
-    places = list(costs.positions) if costs.travel else []
-    farthest = max((costs.distance(a, b) for a in places for b in places), default=0)
-    dearest = costs.of("pick") + costs.of("place") + max(map(costs.of, FAMILY)) + 2 * farthest
-    most = 2 * dearest * max(1, len(instance.blocks))
+    """Return why the costs of an instance are beyond what engines can sum, or None."""
+    most = most_sum(instance)
     if most <= MOST_SUM:
         return None
     return f"its costs may add up to {most:,}; engines count to {MOST_SUM:,}"
@@ -162,7 +168,8 @@ class EnginePlanner(ProblemPlanner):
             trim_buffers(instance), problem.options, self.encoding_of(problem), named_blocks(instance)
         )
         with tempfile.TemporaryDirectory(prefix="smash-", ignore_cleanup_errors=True) as folder:
-            run = Run(task, log, self.name, Path(folder), deadline, self.memory)
+            doubt = beyond_tests(self.name, problem.instance)
+            run = Run(task, log, self.name, Path(folder), deadline, self.memory, doubt=doubt)
             run.details["encoding"] = task.encoding.name
             run.details["compile_seconds"] = round(log.elapsed, 4)
             outcome = self.run(run)
@@ -182,8 +189,10 @@ class EnginePlanner(ProblemPlanner):
             raise PlannerCrashed(f"{self.name}: {outcome.text}{_last_words(run)}")
         if run.log.best is None and outcome.kind == "unsupported":
             raise Unsupported(f"{self.name}: {outcome.text}")
-        if run.infeasible:
+        if run.infeasible and run.doubt is None:
             run.log.refute(self.name)
+        elif run.infeasible:
+            run.claim({"status": "infeasible"})
         return run.log.plan()
 
 
