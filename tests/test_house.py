@@ -43,7 +43,8 @@ ORDERS = {
     ),
     "smash_analysis": (
         *("statistics", "metrics", "tables", "charts", "command"),
-        *("ablation", "comparison", "scaling", "execution_tables", "execution_sweeps", "scoop", "readme", "export"),
+        *("ablation", "comparison", "scaling", "execution_tables", "execution_sweeps", "robustness", "paces", "scoop"),
+        *("readme", "export"),
         "report",
     ),
 }
