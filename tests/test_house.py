@@ -44,7 +44,7 @@ ORDERS = {
     ),
     "smash_analysis": (
         *("statistics", "metrics", "tables", "charts", "command"),
-        *("ablation", "comparison", "scaling", "execution_tables", "execution_sweeps", "paces", "robustness", "scoop"),
+        *("ablation", "comparison", "scaling", "execution_tables", "execution_sweeps", "robustness", "paces", "scoop"),
         *("forecasts", "readme", "export"),
         "report",
     ),
