@@ -13,6 +13,9 @@ from smash.problem.errors import Unsupported
 from smash.problem.model import TABLE, Action, Aggregating, Pick, Place, State
 from smash.problem.problem import Problem
 
+INTO_OTHERS = 1.0
+"""Risk of a topple among blocks that still lie from an earlier one of the same pile: it rams them, and no trial tells how
+they come to rest."""
 BESIDE = 1.5
 """A block whose middle is nearer to a pile's than this many sides leaves the fingers little room."""
 
@@ -39,12 +42,14 @@ class Lying:
         blocked: how probably another block of the same topple is in the way of its grasp at first.
         companions: the other blocks of that topple.
         beside: how probably it lies at the foot of the pile at a location.
+        fallen_from: the location that it was toppled from.
     """
 
     at: Point
     blocked: float = 0.0
     companions: frozenset[str] = frozenset()
     beside: Mapping[str, float] = field(default_factory=dict)
+    fallen_from: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,10 +159,11 @@ class Forecaster:
                 fall = self.fall(location, height, len(fallen))
                 target = self._above(location, height)
                 taken = fall.seconds + self._detour(walk, target)
-                risk = fall.risk
+                among = any(lying.fallen_from == location for lying in walk.lying.values())
+                risk = INTO_OTHERS if among else fall.risk
                 for block, lying in zip(fallen, fall.landed, strict=True):
                     companions = frozenset(fallen).difference((block,))
-                    walk.lying[block] = Lying(lying.at, lying.blocked, companions, lying.beside)
+                    walk.lying[block] = Lying(lying.at, lying.blocked, companions, lying.beside, location)
             case Aggregating():
                 raise Unsupported(f"{action}: the outcome model has no times for it")
         self.law.carry_out(before, action)

@@ -13,6 +13,7 @@ from smash.forecast.expected import Forecaster
 from smash.forecast.model import default_model, model_from_document, read_model, write_model
 from smash.forecast.robust import least_risk
 from smash.forecast.search import faster
+from smash.problem.actions.topple import Topple
 from smash.problem.errors import MalformedFile, Unsupported
 from smash.problem.files.plans import plan_from_document
 from smash.problem.model import PlanOptions
@@ -78,6 +79,17 @@ def test_toppled_blocks_are_expected_along_the_push(nine):
     forecast = forecaster(nine)
     near, far = (lying.at for lying in forecast.fall("s2", 1, 4).landed[::3])
     assert abs(far.bearing - forecast.spots["s2"].bearing) > abs(near.bearing - forecast.spots["s2"].bearing) > 0.1
+
+
+def test_a_topple_among_blocks_that_fell_there_before_is_a_risk():
+    instance = door.make_instance(start={"s1": ["a", "b", "c", "d"]}, goal={"s1": ["d", "c", "b", "a"]})
+    forecast = forecaster(instance)
+    again, apart = (
+        [step.risk for step in forecast.steps(actions)]
+        for actions in ([Topple("s1", 3), Topple("s1", 1)], [Topple("s1", 1)])
+    )
+    assert again == [0.0, 1.0]
+    assert apart == [0.0]
 
 
 def test_annealing_finds_no_slower_plan_than_it_began_with(nine):
