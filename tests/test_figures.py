@@ -1,7 +1,7 @@
 """Every figure of README and docs names its command and the record that it came from.
 
-A paragraph, list or table with measured figures ends with a comment, `<!-- from: COMMAND -> RECORD -->`: the command as
-a reader would type it, the record a file or folder of the repository, or `RECORD#words`, which stand in the file.
+A paragraph, list or table with measured figures ends with a comment, `<!-- from: COMMAND -> RECORD -->`: the command
+as a reader would type it, the record a file or folder of the repository, or `RECORD#words`, which stand in the file.
 Several sources stand one a line. `<!-- from: the paper -->` and `<!-- from: stated -->` say of figures that nobody
 measured here where they are from: the paper, or a choice (a budget, a size, a limit of the law).
 """
