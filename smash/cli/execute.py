@@ -68,9 +68,9 @@ def command(
     if engine is not None:
         require_engine(engine)
     if video is not None:
-        require("smash execute --video", "imageio")
+        require("smash execute --video", "imageio", "pybullet")
     if stills is not None:
-        require("smash execute --stills", "matplotlib")
+        require("smash execute --stills", "matplotlib", "pybullet")
     require_writable(replay, video, stills, trajectory, out)
     if replanner is not None:
         _require_planner(replanner, no_replan)
