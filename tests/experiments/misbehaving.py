@@ -336,6 +336,14 @@ def stops_its_guardian(instance, on_incumbent):
     time.sleep(600)
 
 
+@misbehaves
+def fells_all_above(instance, on_incumbent):
+    subprocess.Popen(SLEEPER, start_new_session=True)
+    psutil.Process(os.getppid()).parent().kill()
+    os.kill(os.getppid(), signal.SIGSTOP)
+    time.sleep(600)
+
+
 # --- children
 
 
@@ -388,6 +396,7 @@ ENDS = {
     "comes-back": ("over-budget", "stopped"),
     "ends-with-a-full-hand": ("refused", "hand"),
     "exits-well": ("crashed", "exit code 0 and no answer"),
+    "fells-all-above": ("crashed", "stood still"),
     "fills-its-scratch-folder": ("memory", "scratch folder"),
     "floods-with-incumbents": ("over-budget", "stopped"),
     "forges-a-malformed-file": ("crashed", "wrote to the pipe"),

@@ -241,9 +241,7 @@ def shared_memory():
     return {*named, *segments()}
 
 
-@pytest.mark.parametrize(
-    "planner", ["eats-shared-memory", "writes-to-shared-memory", "eats-memory-files", "eats-segments"]
-)
+@pytest.mark.parametrize("planner", ["eats-shared-memory", "eats-memory-files"])  # the others: test_misbehaving.py
 def test_shared_memory_counts_and_is_cleared_away(run, planner, alive):
     before = shared_memory()
     report = run(planner, memory=200)

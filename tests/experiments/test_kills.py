@@ -159,7 +159,6 @@ def disturbed(out, killer, start):
     while killer.left:
         kind = killer.strike(running)
         seen |= whole_lines(out / RUNS.name)
-        print(kind, len(seen), flush=True)
         if kind == "scheduler":
             break
         if kind == "sweep":

@@ -72,6 +72,7 @@ print(run_isolated(job()).outcome)
 """) == ["feasible", "feasible", "feasible"]
 
 
+@pytest.mark.slow
 def test_a_server_that_stands_still_is_replaced():
     assert said("""
 starting._STARTING = 2.0
