@@ -14,7 +14,7 @@ from smash.experiments.comparison import comparison_of
 from smash.experiments.isolation.job import DEFAULT_MEMORY
 from smash.experiments.sweeps.keep import keep
 from smash.problem.extras import TABLES, require
-from smash.problem.words import one_line
+from smash.problem.words import one_line, visible
 from smash.records.believing import believed_runs
 from smash.records.runs import RunRecord
 
@@ -129,9 +129,9 @@ def _print(rows: pd.DataFrame, title: str) -> None:
     console = Console()
     if not console.is_terminal:
         console.width = 120
-    table = Table(title=Text(title), title_justify="left")
+    table = Table(title=Text(visible(title)), title_justify="left")
     for column in rows.columns:
-        table.add_column(Text(str(column)), overflow="fold", no_wrap=column == "planner")
+        table.add_column(Text(visible(str(column))), overflow="fold", no_wrap=column == "planner")
     for row in rows.itertuples(index=False):
-        table.add_row(*(Text(str(cell)) for cell in row))
+        table.add_row(*(Text(visible(str(cell))) for cell in row))
     console.print(table)
