@@ -57,14 +57,13 @@ def test_damage_to_what_was_asked_of_episodes_is_said(tmp_path, seeds):
     assert "not known" in checked.said
 
 
-def test_a_table_on_the_terminal_escapes_what_a_record_of_a_stage_says(tmp_path):
+def test_a_table_on_the_terminal_escapes_what_a_record_of_a_stage_says(tmp_path, every_kind):
     stages, made = tmp_path / "stages.toml", tmp_path / "made"
-    stages.write_text(STAGES.replace("figure1.json", "instance.json"))
-    (tmp_path / "instance.json").write_bytes((ROOT / "examples" / "figure1.json").read_bytes())
-    run(["reproduce", "--steps", str(stages), "--out", str(made)])
-    record = made / "records" / "first.json"
-    document = json.loads(record.read_text())
-    document["made_from"]["versions"] = {"numba": "\x1b[31mred"}
-    record.write_text(json.dumps(document))
+    stages.write_text(STAGES)
+    document = json.loads(every_kind["record of a stage"].whole[0])
+    document["made_from"]["packages"] = {"numba": "\x1b[31mred"}
+    (made / "records").mkdir(parents=True)
+    (made / "records" / "first.json").write_text(json.dumps(document))
     said = run(["reproduce", "--steps", str(stages), "--out", str(made), "--dry-run"]).said
+    assert "\\x1b[31mred" in said
     assert "\x1b" not in said
