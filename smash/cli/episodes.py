@@ -113,7 +113,7 @@ def command(
             nonlocal done
             done += 1
             words = f"{record.instance} {record.label} {record.variant} {record.policy} {record.seed}"
-            click.echo(f"[{done}/{left}] {words}: {_end(record)}", err=True)
+            click.echo(one_line(f"[{done}/{left}] {words}: {_end(record)}"), err=True)
 
         run_all(runs, records, jobs, stop, ended)
         if stop.is_set():

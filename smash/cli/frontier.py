@@ -17,7 +17,7 @@ from smash.problem.errors import MalformedFile
 from smash.problem.extras import require
 from smash.problem.files.instances import read_instance
 from smash.problem.sets.suites import read_suite
-from smash.problem.words import counted
+from smash.problem.words import counted, visible
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -77,7 +77,7 @@ def _table(title: str, columns: Sequence[str]) -> Table:
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(title=Text(title), title_justify="left")
+    table = Table(title=Text(visible(title)), title_justify="left")
     for column in columns:
         table.add_column(column, justify="right")
     return table

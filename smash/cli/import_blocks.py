@@ -16,6 +16,7 @@ from smash.problem.blocksworld.problem import BlocksProblem
 from smash.problem.blocksworld.world import MOVE
 from smash.problem.errors import Infeasible, MalformedFile, SmashError, Unsupported
 from smash.problem.files.instances import write_instance
+from smash.problem.words import one_line
 
 FAILURES = ((MalformedFile, "malformed"), (Infeasible, "infeasible"), (Unsupported, "unsupported"))
 
@@ -82,7 +83,7 @@ def _say(problem: BlocksProblem, made: Placed) -> None:
     """Say how a problem was read, and where a tower stands on a buffer."""
     click.echo(how_read(problem))
     for warning in _warnings(problem, made):
-        click.echo(f"smash: {problem.where}: {warning}", err=True)
+        click.echo(one_line(f"smash: {problem.where}: {warning}"), err=True)
 
 
 def how_read(problem: BlocksProblem) -> str:

@@ -18,6 +18,7 @@ from smash.experiments.reproduction.reproduce import Planned, Reproduction, Stag
 from smash.experiments.reproduction.stages import read_stages
 from smash.experiments.sweeps.display import span
 from smash.problem.errors import Interrupted, MalformedFile, SmashError
+from smash.problem.words import one_line, visible
 from smash.records.locking import hold
 
 EXPERIMENTS = Path(smash.__file__).parent.parent / "experiments"
@@ -89,11 +90,13 @@ def _show(reproduction: Reproduction, planned: Sequence[Planned]) -> None:
     left = [entry for entry in planned if entry.plan in LEFT]
     total = span(60 * sum(entry.stage.minutes for entry in left))
     words = f"{len(left)} of {len(planned)} stages to do, about {total} on 2 cores" if left else "nothing to do"
-    click.echo(f"{reproduction.stages.name} in {reproduction.out}: {words}")
+    click.echo(one_line(f"{reproduction.stages.name} in {reproduction.out}: {words}"))
     table = Table("stage", "what", "about", "plan", "why")
     for entry in planned:
         took = span(60 * entry.stage.minutes)
-        table.add_row(*(Text(cell) for cell in (entry.stage.name, entry.stage.about, took, entry.plan, entry.why)))
+        table.add_row(
+            *(Text(visible(cell)) for cell in (entry.stage.name, entry.stage.about, took, entry.plan, entry.why))
+        )
     console.print(table)
 
 
@@ -169,7 +172,7 @@ def _end(planned: Sequence[Planned], files: Sequence[Path]) -> None:
     click.echo("\n".join(str(file) for file in files))
     for entry in planned:
         if entry.plan == "not run":
-            click.echo(f"{entry.stage.name} was not run: {entry.why}", err=True)
+            click.echo(one_line(f"{entry.stage.name} was not run: {entry.why}"), err=True)
     failed = [entry.record for entry in planned if entry.record is not None and entry.record.state == "failed"]
     if failed:
         others = f" (and {len(failed) - 1} more)" if len(failed) > 1 else ""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
+from smash.problem.words import visible
+
 if TYPE_CHECKING:
     import pandas as pd
     from rich.table import Table
@@ -43,9 +45,9 @@ def _table(rows: pd.DataFrame, title: str) -> Table:
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(title=Text(title) if title else None, title_justify="left")
+    table = Table(title=Text(visible(title)) if title else None, title_justify="left")
     for number, column in enumerate(rows.columns):
-        table.add_column(Text(str(column)), overflow="fold", no_wrap=not number)
+        table.add_column(Text(visible(str(column))), overflow="fold", no_wrap=not number)
     for row in rows.itertuples(index=False):
-        table.add_row(*(Text(str(cell)) for cell in row))
+        table.add_row(*(Text(visible(str(cell))) for cell in row))
     return table

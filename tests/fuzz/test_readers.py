@@ -7,7 +7,6 @@ from collections import Counter
 import pytest
 
 from tests.fuzz.damage import damage
-from tests.fuzz.kinds import kinds
 from tests.fuzz.running import LONGEST, outside, run
 
 SAMPLE, MANY = 6, 400
@@ -17,11 +16,6 @@ QUICK = 0.2
 MEANT = {0, 2, 3, 4, 5, 6}
 JUDGES = ("submit-check", "best-known add")
 """Commands that end with 1 where a plan is no better than what is known."""
-
-
-@pytest.fixture(scope="session")
-def every_kind(tmp_path_factory):
-    return {kind.name: kind for kind in kinds(tmp_path_factory.mktemp("whole"))}
 
 
 def trial(kind, case, seed, slowest=None):

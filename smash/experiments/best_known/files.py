@@ -127,7 +127,7 @@ def _found_cells(prefix: str, found: Found | None) -> Iterator[tuple[str, object
 
 
 def _entry(row: dict[str, str], where: str) -> Entry:
-    if set(row) != set(COLUMNS) or row["instance"] not in open_instances():
+    if set(row) != set(COLUMNS) or None in row.values() or row["instance"] not in open_instances():
         raise MalformedFile(where, "no row of a list of best known plans of the open instances")
     options_of(row["variant"])
     found = {name: _found(row, name, where) for name in ("found", "bound")}
