@@ -54,7 +54,7 @@ def read_noisy(results: Path) -> pd.DataFrame:
     if not records:
         raise MalformedFile(str(EPISODES.path(results)), "no episode without noise, or with one kind of it")
     noises = [next(iter(record.episode.noise.items()), ("", 0.0)) for record in records if record.episode]
-    amounts = [round(amount * SCALES[kind][1], 6) if kind else 0.0 for kind, amount in noises]
+    amounts = [round(amount * SCALES[kind][1], 2) if kind else 0.0 for kind, amount in noises]
     return told_episodes(records).assign(kind=[kind for kind, _ in noises], amount=amounts)
 
 

@@ -172,7 +172,7 @@ class EpisodeRecord(Record, kw_only=True, frozen=True):
 
 def episode_text(episode: Episode) -> str:
     """The JSON of an episode, one action a line."""
-    document = msgspec.to_builtins(_rounded(episode))
+    document = {**msgspec.to_builtins(_rounded(episode)), "noise": episode.noise}
     lines = []
     for key, value in document.items():
         if key == "actions":

@@ -17,7 +17,7 @@ from smash.execution.scene.tabletop import Noise
 from smash.execution.sight import MEMORY, Sight
 from smash.execution.viewing.recording import Recording
 from smash.problem import MalformedFile, Pick, Place, PositionsGoal, SmashError, make_instance
-from smash.records.episodes import Episode
+from smash.records.episodes import Episode, episode_text
 from smash.records.record import decoded
 from tests.execution.episodes import buried_target, plan_of, swapped_pair
 from tests.execution.scooping import scoop_scene
@@ -172,6 +172,7 @@ def test_a_noisy_episode_succeeds_says_its_noise_and_is_the_same_again():
     assert episodes[0].success, episodes[0].failure
     assert sorted(episodes[0].noise) == ["friction", "mass", "placement", "pose", "size", "yaw"]
     assert episodes[0].without_measured_times() == episodes[1].without_measured_times()
+    assert json.loads(episode_text(episodes[0]))["noise"] == episodes[0].noise
 
 
 def test_blocks_that_are_not_known_well_enough_are_not_grasped_blindly_nor_planned_for_again():
