@@ -14,8 +14,8 @@ from smash.problem.model import TABLE, Action, Aggregating, Pick, Place, State
 from smash.problem.problem import Problem
 
 INTO_OTHERS = 1.0
-"""Risk of a topple among blocks that still lie from an earlier one of the same pile: it rams them, and no trial tells how
-they come to rest."""
+"""Risk of a topple among blocks that still lie from an earlier one of the same pile: it rams them, and no trial tells
+how they come to rest."""
 BESIDE = 1.5
 """A block whose middle is nearer to a pile's than this many sides leaves the fingers little room."""
 
