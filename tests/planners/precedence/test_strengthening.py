@@ -58,7 +58,7 @@ def test_a_gap_of_the_cycles_is_closed_by_rank_inequalities(kernels):
 @NO_MAXSAT
 @pytest.mark.usefixtures("at_once")
 def test_a_gap_of_the_cycles_is_closed_by_maxsat_where_it_is_installed(kernels):
-    graph = build_graph(Problem(wide(120, 20, seed=1), PlanOptions(topple=False)))
+    graph = build_graph(Problem(wide(80, 14, seed=4), PlanOptions(topple=False)))
     bounds = []
     solver = HittingSetSolver(graph, on_bound=bounds.append)
     found = solver.solve(math.inf)
