@@ -10,8 +10,10 @@ from smash_analysis.execution_tables import (
     read_episodes,
     slower_table,
 )
+from smash_analysis.report.sources import find_sources
 
 from smash.problem.errors import MalformedFile
+from smash.records.engines import MixedEngines
 
 
 def record(instance, variant, seconds, success=True, seed=0, task=0.0):
@@ -174,3 +176,13 @@ def test_blocks_that_were_moved_or_touched_unmeant_are_counted_by_setting(tmp_pa
 
 def test_where_nothing_was_moved_unmeant_the_page_says_so(results):
     assert disturbed_table(read_episodes(results)).empty
+
+
+def test_episodes_of_two_engines_make_no_table(tmp_path):
+    records = [record("i", "topple", 60.0), {**record("i", "topple", 60.0, seed=1), "engine": "mujoco"}]
+    (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(entry) + "\n" for entry in records))
+    words = r"episodes of several engines \(1 by mujoco, 1 by pybullet\) make no table"
+    with pytest.raises(MixedEngines, match=words):
+        read_episodes(tmp_path)
+    with pytest.raises(MixedEngines, match=words):
+        find_sources(tmp_path, tmp_path / "report")

@@ -10,7 +10,7 @@ from smash.execution.policy import OPEN
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.scene.tabletop import Friction
 from smash.execution.viewing.recording import Recording
-from smash.motion.robot import ACCELERATION, JERK, LOWER, UPPER, VELOCITY
+from smash.motion.robot import ACCELERATION, JERK, LOWER, UPPER, VELOCITY, panda
 from smash.problem import Law, Pick, Place, Plan, PlanOptions, PositionsGoal, Topple, make_instance
 from smash.problem.actions.registry import kind_of
 from smash.problem.errors import Unsupported
@@ -293,3 +293,29 @@ SWAPPED_BY_PICKS = [
     for block, source, target in (("b", "s2", "s1"), ("a", "s2", "s3"), ("b", "s1", "s2"), ("a", "s3", "s2"))
     for action in (Pick(block, source), Place(block, target))
 ]
+
+
+def test_an_episode_in_mujoco_says_so_and_is_the_same_for_the_same_seed():
+    pytest.importorskip("mujoco")
+    episodes = [run(swapped_pair(), swapped_plan(), policy=OPEN, engine="mujoco", seed=1) for _ in range(2)]
+    assert episodes[0].success, episodes[0].failure
+    assert episodes[0].engine == "mujoco"
+    assert episodes[0].without_measured_times() == episodes[1].without_measured_times()
+
+
+def test_what_the_fingers_hold_creeps_by_less_than_half_a_millimetre_in_mujoco():
+    pytest.importorskip("mujoco")
+    instance = make_instance(
+        name="one", blocks=["a"], stacks=["s1", "s2"], start={"s1": ["a"]}, goal=PositionsGoal({"a": ("s2", 1)})
+    )
+    places = []
+
+    def look(world):
+        if executor.performer.hand is not None and world.opening == 0.0:
+            tool = panda().forward(world.joints())
+            places.append(tool.rotation.T @ (world.pose("a").position - tool.position))
+
+    plan = plan_of("one", Pick("a", "s1"), Place("a", "s2"))
+    executor = Executor(instance, plan, default_scene(), policy=OPEN, engine="mujoco", on_frame=look)
+    assert executor.run().success
+    assert np.linalg.norm(np.array(places) - places[0], axis=1).max() < 0.0005

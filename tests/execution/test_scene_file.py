@@ -80,3 +80,12 @@ def test_an_instance_that_does_not_fit_is_refused_in_one_line(stacks, buffers, b
 def test_a_slot_s_coordinates_invert_its_points(direction):
     slot = Slot(0.45, 1.1, (direction,))
     assert slot.coordinates(*slot.point(0.2, -0.03, direction), direction) == pytest.approx((0.2, -0.03))
+
+
+def test_a_scene_names_its_engine_and_is_the_same_scene_in_every_engine():
+    document = {"format": "smash-scene/1", "name": "default", "base": "default", "engine": "mujoco"}
+    scene = scene_from_document(document)
+    assert (scene.engine, default_scene().engine) == ("mujoco", None)
+    assert scene.fingerprint == default_scene().fingerprint
+    with pytest.raises(MalformedFile, match="engine"):
+        scene_from_document({**document, "engine": "ode"})

@@ -24,7 +24,7 @@ from smash.execution.scene.noise import Made
 from smash.execution.scene.tabletop import Friction, Tabletop
 from smash.motion.robot import ARM_JOINTS
 
-TIME_STEP, HOLDING_STEP = 1 / 960, 1 / 1920
+TIME_STEP, HOLDING_STEP = 1 / 960, 1 / 2400
 """Of the simulation, and while the hand holds something [s]. A contact's friction knows speeds and no places: a held
 block goes on along the tangent where the hand goes round, and so drifts outwards by an amount in proportion to this."""
 IMPEDANCE_RATIO = 10.0
