@@ -5,10 +5,12 @@ import math
 import pandas as pd
 import pytest
 from smash_analysis.ablation import make
+from smash_analysis.charts.heatmaps import ratio_place, ratio_reach
 from smash_analysis.statistics.findings import findings, smallest_buffers
 from smash_analysis.tables.cells import matched_cells, variant_cells
 from smash_analysis.tables.readings import cutoff_check, readings
 from smash_analysis.tables.runs import incumbents_table, runs_table
+from smash_analysis.tables.writing import median_iqr, of_seconds
 
 from smash.problem.errors import MalformedFile
 from smash.records.believing import believed_runs
@@ -115,3 +117,16 @@ def test_runs_and_incumbents_are_tidy_tables():
     assert table["first_seconds"].fillna(-1).tolist() == [0.5, -1]
     assert table["best_seconds"].fillna(-1).tolist() == [2.0, -1]
     assert incumbents_table(runs)["cost"].tolist() == [9, 7]
+
+
+def test_a_ratio_of_1_is_the_middle_of_its_scale_and_2_as_far_from_it_as_a_half():
+    reach = ratio_reach([1.2, 0.5])
+    assert reach == 2
+    assert [round(ratio_place(ratio, reach), 9) for ratio in (0.5, 1, 2)] == [0, 0.5, 1]
+    assert ratio_reach([]) == 1.5
+
+
+def test_seconds_that_would_round_to_zero_are_milliseconds():
+    assert of_seconds(median_iqr, pd.Series([0.001, 0.002, 0.003])) == "2.00 [1.50, 2.50] ms"
+    assert of_seconds(median_iqr, pd.Series([0.5, 0.5])) == "0.50 [0.50, 0.50]"
+    assert of_seconds(median_iqr, pd.Series([], dtype=float)) == "–"
