@@ -75,7 +75,7 @@ print(run_isolated(job()).outcome)
 @pytest.mark.slow
 def test_a_server_that_stands_still_is_replaced():
     assert said("""
-starting._STARTING = 2.0
+starting._FORKING = 2.0
 run_isolated(job())
 psutil.Process(starting.SHARED._process).suspend()
 print(run_isolated(job()).outcome)

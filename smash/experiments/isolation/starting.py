@@ -33,7 +33,9 @@ from smash.problem.errors import SmashError
 _ENDING = 10.0
 """Seconds that a guardian, or a server, has to end once its input is closed."""
 _STARTING = 60.0
-"""Seconds that a server has to fork a guardian; a new one imports the package first."""
+"""Seconds that a new server has to fork a guardian: it imports the package first."""
+_FORKING = 10.0
+"""Seconds that one has that has done so before."""
 _ATTEMPTS = 3
 _POLLING = 0.002
 """Seconds between two looks whether a server has ended."""
@@ -140,6 +142,7 @@ class ForkServer:
         self._socket: socket.socket | None = None
         self._process = 0
         self._owner = 0
+        self._has_forked = False
 
     def guardian(self, job: Job, left: Left) -> Guardian:
         """Have a guardian forked and tell it its job.
@@ -182,8 +185,9 @@ class ForkServer:
             sent = False
         for number in (asked, told, telling):
             os.close(number)
-        words = _line(status, _STARTING) if sent else None
+        words = _line(status, _FORKING if self._has_forked else _STARTING) if sent else None
         if words:
+            self._has_forked = True
             return Guardian(stdin, stdout, status, int(words), self._process)
         for number in (stdin, stdout, status):
             os.close(number)
@@ -193,6 +197,7 @@ class ForkServer:
         if self._socket is None or self._owner != os.getpid():
             self._socket, its = socket.socketpair()
             self._owner = os.getpid()
+            self._has_forked = False
             self._process = _copy(its) if self._copied else _fresh(its)
             its.close()
         return self._socket
