@@ -82,6 +82,7 @@ class _Layers:
         self._law = forecaster.law
         self._cost = cost
         self._misplaced = misplaced(forecaster)
+        self._alike = not near_buffers(forecaster)
         begin = forecaster.begin()
         self._layers: list[dict[Hashable, _Node]] = [{} for _ in range(cost + 1)]
         self._layers[0][_key(begin)] = _Node(begin, 0.0, None, ())
@@ -133,14 +134,28 @@ class _Layers:
                 yield from ((action, Place(action.block, target)) for target in self._targets(state, action.source))
 
     def _targets(self, state: State, source: str) -> Iterator[str]:
-        """Yield where a block may go; of the empty buffers one, since they differ in nothing that risk depends on."""
+        """Yield where a block may go; of the empty buffers one, where they differ in nothing that risk depends on."""
         instance = self._forecaster.problem.instance
         yield from (location for location in instance.stacks if location != source)
         empty = 0
         for location in instance.buffers:
             empty += not state.piles[location]
-            if location != source and (state.piles[location] or empty == 1):
+            if location != source and (state.piles[location] or empty == 1 or not self._alike):
                 yield location
+
+
+def near_buffers(forecaster: Forecaster) -> bool:
+    """Return whether a toppled block may come to lie at the foot of a pile on a buffer."""
+    instance = forecaster.problem.instance
+    most = len(instance.blocks)
+    buffers = set(instance.buffers)
+    return any(
+        not buffers.isdisjoint(lying.beside)
+        for location in instance.stacks
+        for height in range(1, most + 1)
+        for falling in range(1, most - height + 2)
+        for lying in forecaster.fall(location, height, falling).landed
+    )
 
 
 def misplaced(forecaster: Forecaster) -> Callable[[State], int]:

@@ -27,6 +27,12 @@ def nine():
     return door.suite("multi-9")[0]
 
 
+@pytest.fixture
+def forecast_alone(monkeypatch):
+    """No motion is rehearsed: `tests/execution` does that."""
+    monkeypatch.setattr("smash.experiments.weighing._rehearsal", lambda job, model: None)
+
+
 def forecaster(instance, **options):
     return Forecaster(Problem(instance, PlanOptions(**options)), default_model())
 
@@ -133,6 +139,7 @@ def test_what_the_model_does_not_know_is_unsupported():
         )
 
 
+@pytest.mark.usefixtures("forecast_alone")
 def test_a_plan_for_seconds_says_what_it_expects(tmp_path):
     out = tmp_path / "plan.json"
     ended = CliRunner().invoke(smash, ["plan", FIGURE, "--objective", "seconds", "--budget", "0.5", "--out", str(out)])
@@ -153,6 +160,7 @@ def test_seconds_of_a_plan_file_are_seconds_of_a_plan(change):
         plan_from_document(document | {"status": "unknown" if "cost" in change else "feasible"} | change)
 
 
+@pytest.mark.usefixtures("forecast_alone")
 def test_the_door_takes_the_objective():
     assert door.plan(FIGURE, objective="seconds", budget=0.3).expected_seconds > 0
     assert door.plan(FIGURE, robust=True, budget=1).expected_seconds is None
