@@ -16,6 +16,7 @@ def recording_of(blocks, seconds=1.0, interval=0.08):
         taken.links.append(np.tile([0, 0, 0.3, 0, 0, 0, 1.0], (10, 1)))
         taken.blocks.append(np.array(row))
         taken.trays.append(np.zeros((0, 7)))
+        taken.touched.append([0] if moment < 0.5 else [])
     return taken
 
 

@@ -1,5 +1,6 @@
 """The replay page of a recording made by hand: what it holds whatever things are called, and what a browser shows."""
 
+import base64
 import json
 import re
 
@@ -86,6 +87,15 @@ def page(tmp_path):
     episode = episode_of("one", ("pick", "b1", "s1"), ("place", "b1", "s2"))
     write_replay(tmp_path / "r.html", recording_of(1), default_scene(), episode, one_block())
     return tmp_path / "r.html"
+
+
+def test_gap_tasks_and_what_is_touched_are_told(page):
+    data = data_of(page.read_text(encoding="utf-8"))
+    assert [action["gap"] for action in data["actions"]] == [False, False]
+    assert data["touched"][0] == [0]
+    assert data["touched"][-1] == []
+    poses = np.frombuffer(base64.b64decode(data["poses"]), dtype="<i2").reshape(-1, 7) * data["unit"]
+    assert poses[0] == pytest.approx([0.3, 0.0, 0.0225, 0, 0, 0, 1], abs=1e-4)
 
 
 SHOWN = "[...document.querySelectorAll('.label')].filter(l => l.checkVisibility()).map(l => l.textContent)"

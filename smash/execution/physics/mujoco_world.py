@@ -96,7 +96,8 @@ class MujocoWorld(World):
     def _send_fingers(self) -> None:
         """Nothing to do: each step takes the fingers' motors on towards `opening`."""
 
-    def _in_contact(self) -> Iterator[str]:
+    def in_contact(self) -> Iterator[str]:
+        """The blocks that arm or hand touch now; one may be named several times."""
         contact = self.data.contact
         if not len(contact.dist):
             return

@@ -140,7 +140,8 @@ class PyBulletWorld(World):
                 maxVelocity=FINGER_SPEED,
             )
 
-    def _in_contact(self) -> Iterator[str]:
+    def in_contact(self) -> Iterator[str]:
+        """The blocks that arm or hand touch now; one may be named several times."""
         for point in self.client.getContactPoints(bodyA=self.robot):
             block = self._named.get(point[2])
             if block is not None and point[8] <= 0.0:

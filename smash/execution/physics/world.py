@@ -131,7 +131,7 @@ class World(ABC):
         """Let the fingers' motors pull towards `opening`, until they are told otherwise."""
 
     @abstractmethod
-    def _in_contact(self) -> Iterable[str]:
+    def in_contact(self) -> Iterable[str]:
         """The blocks that arm or hand touch now; one may be named several times."""
 
     @abstractmethod
@@ -185,7 +185,7 @@ class World(ABC):
 
     def _note_contacts(self) -> None:
         """Remember the blocks that arm or hand touch and are not meant to."""
-        for block in self._in_contact():
+        for block in self.in_contact():
             if block not in self.meant:
                 self._touched[block] = None
 

@@ -25,6 +25,7 @@ class Recording:
         links: Position and quaternion of links 1 to 7, hand and fingers per frame, shape (10, 7) [m]; the base stands.
         blocks: Position and quaternion (x, y, z, w) of the blocks per frame, shape (B, 7) [m].
         trays: The same of the carriers, shape (C, 7).
+        touched: The blocks that arm or hand touch, by their places in that order, per frame.
     """
 
     times: list[float] = field(default_factory=list)
@@ -32,6 +33,7 @@ class Recording:
     links: list[NDArray[np.float64]] = field(default_factory=list)
     blocks: list[NDArray[np.float64]] = field(default_factory=list)
     trays: list[NDArray[np.float64]] = field(default_factory=list)
+    touched: list[list[int]] = field(default_factory=list)
 
     def take(self, world: World) -> None:
         """Add the present frame, if the last one is old enough."""
@@ -40,7 +42,10 @@ class Recording:
         self.times.append(world.time)
         self.joints.append(np.concatenate([world.joints(), world.fingers()]))
         self.links.append(world.links())
-        self.blocks.append(_rows(world.poses().values()))
+        poses = world.poses()
+        places = {block: place for place, block in enumerate(poses)}
+        self.blocks.append(_rows(poses.values()))
+        self.touched.append(sorted({places[block] for block in world.in_contact()}))
         self.trays.append(_rows(world.carriers().values()))
 
     def at(self, moment: float) -> int:
