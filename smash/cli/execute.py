@@ -116,10 +116,11 @@ def command(
         on_frame=capture.frame,
         on_step=shown,
     )
-    say_engine(executor.engine, tabletop, engine)
     with ended_by_signals():
         with status:
             episode = executor.run()
+        if episode.failure is None:
+            say_engine(executor.engine, tabletop, engine)
         text = episode_text(episode)
         click.echo(text, nl=False)
         if out is not None:
@@ -129,7 +130,8 @@ def command(
     if episode.failure is not None:
         failure = episode.failure
         done = "nothing" if failure.action is None else " ".join(map(str, failure.action))
-        fail(f"{instance}: execution failed at step {failure.step} ({done}): {failure.name}: {failure.reason}", 5)
+        where = f"step {failure.step} ({done}), engine {executor.engine}"
+        fail(f"{instance}: execution failed at {where}: {failure.name}: {failure.reason}", 5)
 
 
 def _require_planner(name: str, no_replan: bool) -> None:

@@ -27,7 +27,7 @@ def execute(folder, *arguments):
 def test_the_command_prints_the_episode_and_leaves_its_files(filed):
     ended = execute(filed, "--no-replan", "--replay", "r.html", "--stills", "s.png", "--trajectory", "t.csv")
     assert ended.returncode == 0, ended.stderr
-    assert ended.stderr == ""
+    assert ended.stderr == "engine: pybullet (--engine names another)\n"
     assert json.loads(ended.stdout)["success"] is True
     page = (filed / "r.html").read_text()
     assert len(page) < 15_000_000
