@@ -64,7 +64,7 @@ def execute(
     if noise is not None:
         text("noise", noise)
     if pace is not None and (isinstance(pace, bool) or not isinstance(pace, int | float)):
-        raise SmashError(f"pace: {pace!r} is not allowed; a number above 0, up to 1")
+        raise SmashError(f"pace: {pace!r} is not allowed; a number of 0.01 to 1")
     made = given_plan(plan, problem)
     return executor_of(
         problem, made, seed=seed, replan=replan, scene=scene, noise=noise, pace=pace, engine=engine

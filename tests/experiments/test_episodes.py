@@ -172,7 +172,7 @@ def test_an_interrupted_one_ends_at_once_and_keeps_what_had_ended(results, tmp_p
         [sys.executable, "-m", "smash", "episodes", str(tmp_path)], stderr=subprocess.PIPE, text=True
     )
     said = running.stderr.readline()
-    assert "1 episodes, 1 left" in said
+    assert "1 episode, 1 left" in said
     time.sleep(0.5)
     running.send_signal(signal.SIGINT)
     _, said = running.communicate(timeout=100)

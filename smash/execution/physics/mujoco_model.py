@@ -190,7 +190,7 @@ def _pair(spec: Any, first: str, second: str, friction: float) -> None:
     pair = spec.add_pair(geomname1=first, geomname2=second)
     pair.friction = [friction, friction, TORSION, ROLLING, ROLLING]
     pair.condim = 4
-    pair.solref = CONTACT if second == "table" else GRASP
+    pair.solref = GRASP if second in FINGER_SIDES else CONTACT
     pair.solimp = IMPEDANCE
 
 

@@ -70,7 +70,9 @@ def parse_noise(text: str, what: str = "noise") -> Noise:
         if found is None or found[2] not in UNITS[kind]:
             units = " or ".join(unit or "no unit" for unit in UNITS[kind])
             raise SmashError(f"{what}: {kind}={amount!r} is not allowed; a number, 0 or more, in {units}")
-        amounts[kind] = float(found[1]) * UNITS[kind][found[2]]
+        value = float(found[1]) * UNITS[kind][found[2]]
+        # 7mm and 0.7cm are one amount.
+        amounts[kind] = value if kind == "yaw" else float(f"{value:.12g}")
     return checked_noise(Noise(**amounts), what)
 
 

@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal, cast
 import msgspec
 
 from smash.execution.scene.noise import checked_noise, parse_noise
-from smash.execution.scene.tabletop import DIRECTIONS, Friction, Noise, Slot, Tabletop
+from smash.execution.scene.tabletop import DIRECTIONS, SLOWEST, Friction, Noise, Slot, Tabletop
 from smash.execution.scene.tray import Tray
 from smash.problem.errors import MalformedFile, SmashError
 from smash.problem.files.documents import check_format, convert, parse_json, parse_toml, read_bytes
@@ -23,7 +23,7 @@ from smash.problem.files.documents import check_format, convert, parse_json, par
 SCENE_FORMAT = "smash-scene/1"
 DEFAULT_SCENE = Path(__file__).parent / "default.toml"
 
-_Share = Annotated[float, msgspec.Meta(gt=0.0, le=1.0)]
+_Share = Annotated[float, msgspec.Meta(ge=SLOWEST, le=1.0)]
 _Coefficient = Annotated[float, msgspec.Meta(gt=0.0, le=2.0)]
 
 
@@ -170,8 +170,8 @@ def scene_of(
     if noise is not None:
         scene = replace(scene, noise=parse_noise(noise))
     if pace is not None:
-        if not 0.0 < pace <= 1.0:
-            raise SmashError(f"pace: {pace} is not allowed; above 0, up to 1")
+        if not SLOWEST <= pace <= 1.0:
+            raise SmashError(f"pace: {pace} is not allowed; {SLOWEST:g} to 1")
         scene = replace(scene, velocity=pace, acceleration=pace)
     return scene
 

@@ -24,6 +24,9 @@ DIRECTIONS: Mapping[str, float] = {
 }
 """Topple directions along the axes of a slot's frame: name -> angle from the slot's x axis [rad]."""
 
+SLOWEST = 0.01
+"""The least share of the arm's limits that motions may use: an episode would take an hour of simulated time."""
+
 HIGHEST = 12
 """The most blocks of 4.5 cm that the arm can stack from above within its joint limits; other sizes in proportion."""
 

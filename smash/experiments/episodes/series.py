@@ -112,8 +112,9 @@ def episode_runs(
 
 
 def _replay(results: Path, run: EpisodeRun) -> str:
-    """The page of an episode: instance, planner, variant and policy in words that any file system takes."""
+    """The page of an episode: instance, planner, variant, policy and scene in words that any file system takes."""
     words = [run.record.instance, run.record.label, run.record.variant, run.policy]
+    words += [] if run.told is None else [run.told]
     words += [] if run.engine == "pybullet" else [run.engine]
     name = re.sub(r"[^A-Za-z0-9.-]+", "-", "_".join(words)).strip("-")
     return str((results / REPLAYS / f"{name}.html").resolve())
