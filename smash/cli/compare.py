@@ -20,7 +20,7 @@ from smash.problem.words import counted, one_line
 from smash.records.believing import believed_runs
 from smash.records.runs import RunRecord
 
-SHORT = {"first plan [s]": "first [s]", "best plan [s]": "best [s]", "cost, solved": "cost", "cost, common": "common"}
+SHORT = {"first plan [s]": "first", "best plan [s]": "best", "cost, solved": "cost", "cost, common": "common"}
 """The table's columns in a terminal, under shorter names; the files hold them all."""
 INTERVAL = re.compile(r" \[[^]]*\]")
 """What a terminal leaves out of a cell."""

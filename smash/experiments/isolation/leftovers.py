@@ -13,7 +13,8 @@ from pathlib import Path
 import psutil
 
 MARK = "SMASH_RUN"
-"""Environment variable that every process of a run inherits, with a value of the run's own."""
+"""Environment variable that every program which a run starts inherits, with a value of the run's own; processes that are
+forked without being another program show their parent's."""
 _ROUNDS = 200
 
 
