@@ -72,7 +72,7 @@ def test_a_scene_with_a_noise_that_is_none_is_refused(noise):
 
 def test_a_pace_is_a_share_of_the_limits_and_noise_tells_scenes_apart():
     assert (scene_of(pace=0.1).velocity, scene_of(pace=0.1).acceleration) == (0.1, 0.1)
-    with pytest.raises(SmashError, match="0.01 to 1"):
+    with pytest.raises(SmashError, match=r"0\.01 to 1"):
         scene_of(pace=0.0)
     assert scene_of(noise="pose=0mm").fingerprint == default_scene().fingerprint
     assert scene_of(noise="pose=1mm").fingerprint != default_scene().fingerprint

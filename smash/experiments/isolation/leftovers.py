@@ -13,8 +13,8 @@ from pathlib import Path
 import psutil
 
 MARK = "SMASH_RUN"
-"""Environment variable that every program which a run starts inherits, with a value of the run's own; processes that are
-forked without being another program show their parent's."""
+"""Environment variable that every program which a run starts inherits, with a value of the run's own; what is forked
+and stays the same program shows its parent's."""
 _ROUNDS = 200
 
 
