@@ -35,7 +35,11 @@ from smash.problem.files.plans import read_plan
 @click.option("--video-speed", metavar="N", help="It runs N times as fast as simulated time (default: 4).")
 @click.option("--video-camera", metavar="YAW,PITCH,DISTANCE", help="In degrees and metres (default: 28,-40,1.45).")
 @click.option("--stills", type=click.Path(path_type=Path, dir_okay=False), help="Draw start, middle and end (.png).")
-@click.option("--trajectory", type=click.Path(path_type=Path, dir_okay=False), help="Write joint positions as CSV.")
+@click.option(
+    "--trajectory",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Write joint positions (.csv), or ROS 2 messages for Foxglove and rosbag2 (.mcap).",
+)
 @click.option("--gui", is_flag=True, help="Show PyBullet's window; MuJoCo has none.")
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Also write the episode here.")
 def command(
@@ -68,6 +72,7 @@ def command(
       smash execute examples/figure1.json plan.json --video film.mp4 --video-size 960x640 --video-speed 2
       smash execute examples/figure1.json plan.json --noise pose=3mm,yaw=2deg,friction=10% --pace 0.25
       smash execute examples/figure1.json plan.json --engine mujoco
+      smash execute examples/figure1.json plan.json --trajectory episode.mcap
     """
     require("smash execute", *EXECUTION)
     if engine is not None:

@@ -61,6 +61,9 @@ class Executor:
         on_frame: Called with the world 25 times a simulated second.
         on_step: Called with each action before it is carried out.
 
+    Attributes:
+        ended: Where everything was at the episode's end.
+
     Raises:
         DoesNotFit: where the scene has no room for the instance.
         Unsupported: where a block is in the hand at the start, or the engine is not installed.
@@ -131,6 +134,7 @@ class Executor:
             self.noticed: dict[str, float] = {}
             failure = self._run_plan()
             final = self.performer.truth()
+            self.ended = self.table.seen(world.poses(), world.carriers())
             return self._episode(failure or self._unseen_shortfall(final), final)
 
     def _unseen_shortfall(self, final: State) -> ExecutionFailure | None:

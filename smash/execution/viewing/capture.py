@@ -2,37 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from pathlib import Path
-
-import numpy as np
-from numpy.typing import NDArray
 
 from smash.execution.executor import Executor
 from smash.execution.physics.world import Frame
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.viewing.film import FILM, Film, write_film
 from smash.execution.viewing.recording import Recording
-from smash.execution.viewing.trajectory_file import write_trajectory
+from smash.execution.viewing.ros_bag import write_bag
+from smash.execution.viewing.trajectory_file import thinned, write_trajectory
 from smash.problem.errors import MalformedFile
+from smash.problem.extras import require
 from smash.problem.files.documents import replacing
 from smash.records.episodes import Episode
 
 FILMS = (".mp4", ".gif")
 PICTURES = (".png", ".pdf", ".svg", ".jpg")
+ROS = ".mcap"
+TRAJECTORIES = (".csv", ROS)
 """How the names of what is written end."""
-
-Sample = tuple[float, NDArray[np.float64], float]
-
-TRAJECTORY_INTERVAL = 0.01
-"""Time between two rows of an exported trajectory [s]."""
 
 
 class Capture:
     """Records an episode where a file was asked for, and writes the files afterwards.
 
     Raises:
-        MalformedFile: at once, where the name of a film or of stills ends in what cannot be written.
+        MalformedFile: at once, where the name of a film, of stills or of a trajectory ends in what cannot be written;
+            `MissingExtra` where what writes it is not installed.
     """
 
     def __init__(
@@ -48,6 +44,10 @@ class Capture:
         self.replay, self.video, self.stills, self.trajectory = replay, video, stills, trajectory
         _require_suffix(video, "a film", FILMS)
         _require_suffix(stills, "stills", PICTURES)
+        _require_suffix(trajectory, "a trajectory", TRAJECTORIES)
+        self._for_ros = trajectory is not None and trajectory.suffix == ROS
+        if self._for_ros:
+            require(f"--trajectory {trajectory}", "mcap_ros2")
         self.recording = Recording()
 
     @property
@@ -58,14 +58,14 @@ class Capture:
     @property
     def frame(self) -> Frame | None:
         """What the executor calls at each frame; None where nothing needs frames."""
-        return self.recording.take if self.replay or self.video or self.stills else None
+        return self.recording.take if self.replay or self.video or self.stills or self._for_ros else None
 
     def finish(self, executor: Executor, episode: Episode) -> None:
         """Write what was asked for, each file whole or not at all."""
         tabletop = executor.tabletop
         if self.trajectory is not None:
             with replacing(self.trajectory) as path:
-                write_trajectory(path, _thinned(executor.world.recorded))
+                self._write_trajectory(path, executor, episode)
         if self.replay is not None:
             from smash.execution.viewing.replay import write_replay
 
@@ -76,6 +76,14 @@ class Capture:
         if self.video is not None:
             with replacing(self.video) as path:
                 write_film(path, self.recording, tabletop, episode, self.film)
+
+    def _write_trajectory(self, path: Path, executor: Executor, episode: Episode) -> None:
+        recorded = executor.world.recorded
+        if self._for_ros:
+            end = executor.world.time, executor.ended
+            write_bag(path, recorded, self.recording, end, executor.tabletop, episode)
+        else:
+            write_trajectory(path, thinned(recorded))
 
     def _write_stills(self, path: Path, tabletop: Tabletop, episode: Episode) -> None:
         from smash.execution.viewing.pictures import write_stills
@@ -89,16 +97,6 @@ class Capture:
         end = "end" if episode.success else "end (failed)"
         captions = [("start", times[0]), ("after the topple" if toppled else "on the way", middle), (end, times[-1])]
         write_stills(path, self.recording, tabletop, captions)
-
-
-def _thinned(samples: Iterable[Sample]) -> Iterator[Sample]:
-    """Leave out samples that follow another one too closely."""
-    due = float("-inf")
-    for sample in samples:
-        moment = sample[0]
-        if moment >= due:
-            yield sample
-            due = moment + TRAJECTORY_INTERVAL - 1e-6
 
 
 def _require_suffix(path: Path | None, what: str, allowed: tuple[str, ...]) -> None:
