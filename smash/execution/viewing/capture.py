@@ -1,4 +1,4 @@
-"""The files that `smash execute` can leave beside the episode: replay, film, stills, joint trajectory."""
+"""The files that `smash execute` can leave beside the episode: replay, film, stills, trajectory, looks."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from pathlib import Path
 
 from smash.execution.executor import Executor
 from smash.execution.physics.world import Frame
+from smash.execution.recorded_poses import Look, write_looks
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.viewing.film import FILM, Film, write_film
 from smash.execution.viewing.recording import Recording
@@ -26,6 +27,9 @@ TRAJECTORIES = (".csv", ROS)
 class Capture:
     """Records an episode where a file was asked for, and writes the files afterwards.
 
+    Attributes:
+        seen: Gets what the executor sees, where that is asked for.
+
     Raises:
         MalformedFile: at once, where the name of a film, of stills or of a trajectory ends in what cannot be written;
             `MissingExtra` where what writes it is not installed.
@@ -38,10 +42,13 @@ class Capture:
         video: Path | None = None,
         stills: Path | None = None,
         trajectory: Path | None = None,
+        looks: Path | None = None,
         film: Film = FILM,
     ) -> None:
         self.film = film
         self.replay, self.video, self.stills, self.trajectory = replay, video, stills, trajectory
+        self.looks = looks
+        self.seen: list[Look] | None = None if looks is None else []
         _require_suffix(video, "a film", FILMS)
         _require_suffix(stills, "stills", PICTURES)
         _require_suffix(trajectory, "a trajectory", TRAJECTORIES)
@@ -53,7 +60,8 @@ class Capture:
     @property
     def files(self) -> list[Path]:
         """What is asked for."""
-        return [path for path in (self.replay, self.video, self.stills, self.trajectory) if path is not None]
+        asked = (self.replay, self.video, self.stills, self.trajectory, self.looks)
+        return [path for path in asked if path is not None]
 
     @property
     def frame(self) -> Frame | None:
@@ -66,6 +74,8 @@ class Capture:
         if self.trajectory is not None:
             with replacing(self.trajectory) as path:
                 self._write_trajectory(path, executor, episode)
+        if self.looks is not None:
+            write_looks(self.looks, self.seen or ())
         if self.replay is not None:
             from smash.execution.viewing.replay import write_replay
 
