@@ -12,6 +12,7 @@ from __future__ import annotations
 import os
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
+from math import hypot, isfinite
 from pathlib import Path
 from typing import Final, Protocol
 
@@ -29,6 +30,8 @@ from smash.problem.model import Instance
 POSES_FORMAT: Final = "smash-poses/1"
 UNIT_WITHIN = 1e-3
 """A quaternion's length differs from 1 by no more than this."""
+FURTHEST = 10.0
+"""Nothing is further from the robot's base, along an axis [m]."""
 
 SevenNumbers = tuple[float, float, float, float, float, float, float]
 
@@ -175,10 +178,11 @@ def read_looks(path: str | os.PathLike[str]) -> list[Look]:
     """The looks of a file.
 
     Raises:
-        MalformedFile: with the line that is none, where there is none at all, or where time runs back.
+        MalformedFile: with the line that is no look, or before whose time another one lies.
     """
     looks: list[Look] = []
-    for number, line in enumerate(read_text(path).splitlines(), start=1):
+    # Not `splitlines`, which also ends a line at characters that a name may have.
+    for number, line in enumerate(read_text(path).removesuffix("\n").split("\n"), start=1):
         where = f"{os.fspath(path)}: line {number}"
         document = parse_json(line, where)
         check_format(document, where, POSES_FORMAT)
@@ -187,8 +191,6 @@ def read_looks(path: str | os.PathLike[str]) -> list[Look]:
         if looks and look.time < looks[-1].time:
             raise MalformedFile(where, f"`time`: {look.time:g} is before the {looks[-1].time:g} of the line above")
         looks.append(look)
-    if not looks:
-        raise MalformedFile(os.fspath(path), f"it is empty; a {POSES_FORMAT} file has a look a line")
     return looks
 
 
@@ -202,17 +204,19 @@ def write_looks(path: Path, looks: Iterable[Look]) -> None:
 
 
 def _check(look: Look, where: str) -> None:
-    """Refuse numbers that are none, quaternions that turn nothing, and spreads below 0."""
+    """Refuse numbers that are none or of no table, and quaternions that are of no length 1."""
     for kind, poses in (("blocks", look.blocks), ("carriers", look.carriers)):
         for name, pose in poses.items():
-            if not np.all(np.isfinite(pose)):
-                raise MalformedFile(where, f"`{kind}`: {name!r}: finite numbers are allowed")
-            if abs(np.linalg.norm(pose[3:]) - 1.0) > UNIT_WITHIN:
+            if not all(abs(number) <= FURTHEST for number in pose):
+                raise MalformedFile(
+                    where, f"`{kind}`: {name!r}: numbers from -{FURTHEST:g} to {FURTHEST:g} are allowed"
+                )
+            if abs(hypot(*pose[3:]) - 1.0) > UNIT_WITHIN:
                 raise MalformedFile(where, f"`{kind}`: {name!r}: the last four numbers are no unit quaternion")
     for name, spread in look.spread.items():
-        if not 0.0 <= spread < np.inf:
-            raise MalformedFile(where, f"`spread`: {name!r}: {spread!r} is not allowed; a number, 0 or more")
-    if not np.isfinite(look.time):
+        if not 0.0 <= spread <= FURTHEST:
+            raise MalformedFile(where, f"`spread`: {name!r}: {spread!r} is not allowed; a number, 0 to {FURTHEST:g}")
+    if not isfinite(look.time):
         raise MalformedFile(where, f"`time`: {look.time!r} is not allowed; a finite number")
 
 

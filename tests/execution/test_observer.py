@@ -148,7 +148,7 @@ def test_a_record_tells_what_it_saw_last(tmp_path):
 
 
 def test_looks_are_read_back_as_they_were_written(tmp_path):
-    looks = [Look(time=0.1, blocks={"ä": ROW}, carriers={"t": ROW}, spread={"ä": 0.1}), Look(time=0.1, blocks={})]
+    looks = [Look(time=0.1, blocks={"ä\u2028": ROW}, carriers={"t": ROW}, spread={"ä": 0.1}), Look(time=0.1, blocks={})]
     assert read_looks(filed(tmp_path / "p.jsonl", *looks)) == looks
 
 
@@ -158,7 +158,10 @@ GOOD = {"format": "smash-poses/1", "time": 0.0, "blocks": {"a": ROW}}
 @pytest.mark.parametrize(
     ("lines", "said"),
     [
-        ("", "it is empty"),
+        ("", "line 1: not JSON"),
+        (json.dumps(GOOD) + "\n\n" + json.dumps(GOOD), "line 2: not JSON"),
+        (json.dumps(GOOD).replace("0.4", "1" + 400 * "0"), "line 1: "),
+        (json.dumps({**GOOD, "time": 10**400}), "line 1: "),
         ("{", "line 1: not JSON"),
         ("[]", "line 1: not a JSON object"),
         ({**GOOD, "format": "smash-poses/2"}, "line 1: `format`: 'smash-poses/2' is not allowed"),
@@ -167,7 +170,8 @@ GOOD = {"format": "smash-poses/1", "time": 0.0, "blocks": {"a": ROW}}
         ({**GOOD, "time": float("nan")}, "line 1: "),
         ({**GOOD, "blocks": {"a": ROW[:6]}}, "line 1: "),
         ({**GOOD, "blocks": {"a": [*ROW[:6], 0.5]}}, "line 1: `blocks`: 'a': the last four numbers"),
-        ({**GOOD, "blocks": {"a": [float("inf"), *ROW[1:]]}}, "line 1: `blocks`: 'a': finite numbers"),
+        ({**GOOD, "blocks": {"a": [float("inf"), *ROW[1:]]}}, "line 1: `blocks`: 'a': numbers from -10 to 10"),
+        ({**GOOD, "blocks": {"a": [*ROW[:3], *4 * [1e308]]}}, "line 1: `blocks`: 'a': numbers from -10 to 10"),
         ({**GOOD, "spread": {"a": -1.0}}, "line 1: `spread`: 'a'"),
         (json.dumps({**GOOD, "time": 2.0}) + "\n" + json.dumps(GOOD), "line 2: `time`: 0 is before the 2"),
     ],
