@@ -30,8 +30,8 @@ from smash.problem.model import Instance
 POSES_FORMAT: Final = "smash-poses/1"
 UNIT_WITHIN = 1e-3
 """A quaternion's length differs from 1 by no more than this."""
-FURTHEST = 10.0
-"""Nothing is further from the robot's base, along an axis [m]."""
+FURTHEST = 1e6
+"""Nothing is further from the robot's base, along an axis [m]: what fell off the table falls on."""
 
 SevenNumbers = tuple[float, float, float, float, float, float, float]
 

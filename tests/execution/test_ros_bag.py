@@ -171,14 +171,15 @@ def test_an_episode_without_actions_has_a_trajectory_that_stands_still(tmp_path)
     assert found[POSES][-1][1].transforms[0].child_frame_id == "ä b"
 
 
-def test_equal_episodes_make_equal_files(tmp_path):
+def test_equal_episodes_make_equal_files_however_long_they_were_planned(tmp_path):
     recorded = [(step / 480, READY + 0.001 * step, 0.04 if step < 9 else 0.02) for step in range(1, 49)]
     end = 0.1, Geometry({}, {}, {"a": BlockPose(np.zeros(3), np.eye(3))}, {})
-    for name in ("1.mcap", "2.mcap"):
-        write_bag(
-            tmp_path / name, recorded, recording_of(1, 0.08), end, default_scene(), episode_of("one", ["pick", "a"])
-        )
-    assert (tmp_path / "1.mcap").read_bytes() == (tmp_path / "2.mcap").read_bytes()
+    files = tmp_path / "1.mcap", tmp_path / "2.mcap"
+    for seconds, path in enumerate(files):
+        episode = episode_of("one", ["pick", "a"])
+        episode.times.offline = episode.actions[0].times.online = float(seconds)
+        write_bag(path, recorded, recording_of(1, 0.08), end, default_scene(), episode)
+    assert files[0].read_bytes() == files[1].read_bytes()
 
 
 def test_a_definition_names_each_part_once():

@@ -12,7 +12,7 @@ equal files. The topics:
 - `/blocks`: a box for each block and carrier, once, fixed to its frame.
 - `/action`: the action that begins, in words.
 
-The episode's record is attached as `episode.json`.
+The episode's record is attached as `episode.json`, without the measured times, which differ from run to run.
 """
 
 from __future__ import annotations
@@ -42,7 +42,8 @@ from smash.execution.viewing.ros_messages import (
 )
 from smash.execution.viewing.trajectory_file import Sample, thinned
 from smash.motion.robot import ARM_JOINTS
-from smash.records.episodes import Episode, episode_text
+from smash.problem.files.documents import one_key_a_line
+from smash.records.episodes import Episode
 
 ARM = "/panda_arm_controller/joint_trajectory"
 HAND = "/panda_hand_controller/joint_trajectory"
@@ -95,7 +96,8 @@ def write_bag(
         kinds = {kind: writer.register_msgdef(kind, definition(kind)) for kind in {m.kind: None for m in messages}}
         for sent in sorted(messages, key=lambda message: message.moment):
             writer.write_message(sent.topic, kinds[sent.kind], sent.content, log_time=_nanoseconds(sent.moment))
-        writer.add_attachment(0, 0, "episode.json", "application/json", episode_text(episode).encode())
+        record = one_key_a_line(episode.without_measured_times())
+        writer.add_attachment(0, 0, "episode.json", "application/json", record.encode())
 
 
 def _actions(episode: Episode) -> Iterator[_Sent]:
