@@ -6,9 +6,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-
-pytest.importorskip("mcap_ros2")
-
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
