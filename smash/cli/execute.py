@@ -35,7 +35,17 @@ from smash.problem.files.plans import read_plan
 @click.option("--video-speed", metavar="N", help="It runs N times as fast as simulated time (default: 4).")
 @click.option("--video-camera", metavar="YAW,PITCH,DISTANCE", help="In degrees and metres (default: 28,-40,1.45).")
 @click.option("--stills", type=click.Path(path_type=Path, dir_okay=False), help="Draw start, middle and end (.png).")
-@click.option("--trajectory", type=click.Path(path_type=Path, dir_okay=False), help="Write joint positions as CSV.")
+@click.option(
+    "--trajectory",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Write joint positions (.csv), or ROS 2 messages for Foxglove and rosbag2 (.mcap).",
+)
+@click.option(
+    "--observer", type=click.Path(path_type=Path), help="File of recorded poses to see the blocks by (smash-poses/1)."
+)
+@click.option(
+    "--looks", type=click.Path(path_type=Path, dir_okay=False), help="Write what was seen, as --observer reads it."
+)
 @click.option("--gui", is_flag=True, help="Show PyBullet's window; MuJoCo has none.")
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Also write the episode here.")
 def command(
@@ -56,6 +66,8 @@ def command(
     video_camera: str | None,
     stills: Path | None,
     trajectory: Path | None,
+    observer: Path | None,
+    looks: Path | None,
     gui: bool,
     out: Path | None,
 ) -> None:
@@ -68,6 +80,9 @@ def command(
       smash execute examples/figure1.json plan.json --video film.mp4 --video-size 960x640 --video-speed 2
       smash execute examples/figure1.json plan.json --noise pose=3mm,yaw=2deg,friction=10% --pace 0.25
       smash execute examples/figure1.json plan.json --engine mujoco
+      smash execute examples/figure1.json plan.json --trajectory episode.mcap
+      smash execute examples/figure1.json plan.json --looks poses.jsonl
+      smash execute examples/figure1.json plan.json --observer poses.jsonl
     """
     require("smash execute", *EXECUTION)
     if engine is not None:
@@ -78,7 +93,7 @@ def command(
         raise click.UsageError("--video-size, --video-speed and --video-camera go with --video")
     if stills is not None:
         require("smash execute --stills", "matplotlib", "pybullet")
-    require_writable(replay, video, stills, trajectory, out)
+    require_writable(replay, video, stills, trajectory, looks, out)
     if replanner is not None:
         _require_planner(replanner, no_replan)
     problem, filed = read_instance(instance), read_plan(plan)
@@ -88,7 +103,7 @@ def command(
     from smash.records.episodes import Performed, episode_text
 
     film = film_of(video_size, video_speed, video_camera)
-    capture = Capture(replay=replay, video=video, stills=stills, trajectory=trajectory, film=film)
+    capture = Capture(replay=replay, video=video, stills=stills, trajectory=trajectory, looks=looks, film=film)
     tabletop = default_scene() if scene is None else read_scene(scene)
     from rich.console import Console
     from rich.markup import escape
@@ -112,6 +127,8 @@ def command(
         replanner=replanner,
         budget=budget,
         engine=engine,
+        observer=observer,
+        looks=capture.seen,
         gui=gui,
         on_frame=capture.frame,
         on_step=shown,

@@ -8,7 +8,8 @@ The rooms; each imports those before it in this list, none those after it:
 - `actions`: how the arm carries out each action: `arm_motions` (free motions), `pick_and_place`, and by the interface
   of `kind` topple, carry and lift, with the list of them in `registry`.
 - `physics`: the simulated world of one episode. `layout`: scenes judged and drawn.
-- here: `readback` (the law's state from settled poses), `grounding` (what is planned when), `performing` and
+- here: `observer` (who is asked where the blocks are), `sight` and `recorded_poses` (the simulator and a file as that),
+  `readback` (the law's state from settled poses), `grounding` (what is planned when), `performing` and
   `recovery` (one action, and what is done where it fails), `executor` (an episode), `policy`
   (what is done about failures), `errors` (their names).
 - `trials` (measurements), `viewing` (replays, films, trajectories).

@@ -16,6 +16,7 @@ import numpy as np
 from smash.execution.actions.arm_motions import ArmMotions
 from smash.execution.errors import Blind, Fell, NotAtGoal
 from smash.execution.grounding import Grounder, Task
+from smash.execution.observer import Eyes
 from smash.execution.performing import SURE, Performer
 from smash.execution.physics.engines import engine_of, world_of
 from smash.execution.physics.world import Frame
@@ -56,10 +57,14 @@ class Executor:
         seed: Of the blocks' start and of the motion planner.
         policy: What to do about failures.
         replanner: Plans the task anew from what is observed.
+        eyes: Make the observer that is asked where the blocks are; the simulator's own where none are named.
         engine: What simulates it; the scene's, or the one that is there, where none is named.
         gui: Open the engine's window.
         on_frame: Called with the world 25 times a simulated second.
         on_step: Called with each action before it is carried out.
+
+    Attributes:
+        ended: Where everything was at the episode's end.
 
     Raises:
         DoesNotFit: where the scene has no room for the instance.
@@ -75,6 +80,7 @@ class Executor:
         seed: int = 0,
         policy: Policy | None = None,
         replanner: Replanner | None = None,
+        eyes: Eyes = Sight,
         engine: str | None = None,
         gui: bool = False,
         on_frame: Frame | None = None,
@@ -91,6 +97,7 @@ class Executor:
         self.seed = seed
         self.policy = policy or Policy()
         self.replanner = replanner
+        self._eyes = eyes
         self.engine = engine_of(tabletop, engine)
         self.law = Law(instance, plan.options)
         self.table = Geometry(tabletop.bind(instance), tabletop.bind_stations(instance))
@@ -122,7 +129,8 @@ class Executor:
         )
         with world:
             self.world = world
-            self.performer = Performer(world, self.grounder, self.table, self.policy, Sight(world, self.chance))
+            observer = self._eyes(world, self.chance)
+            self.performer = Performer(world, self.grounder, self.table, self.policy, observer)
             self.recovery = Recovery(self.instance, self.performer, self._recover)
             world.settle()
             self.performer.look_around()
@@ -131,6 +139,7 @@ class Executor:
             self.noticed: dict[str, float] = {}
             failure = self._run_plan()
             final = self.performer.truth()
+            self.ended = self.table.seen(world.poses(), world.carriers())
             return self._episode(failure or self._unseen_shortfall(final), final)
 
     def _unseen_shortfall(self, final: State) -> ExecutionFailure | None:

@@ -17,11 +17,12 @@ from smash.execution.actions.pick_and_place import Approach
 from smash.execution.actions.registry import MOTIONS
 from smash.execution.errors import Blind, OutOfReach, Slip
 from smash.execution.grounding import Grounder, Task
+from smash.execution.observer import Observer
 from smash.execution.physics.world import World
 from smash.execution.policy import Policy
 from smash.execution.readback import read_state
 from smash.execution.scene.geometry import Geometry
-from smash.execution.sight import MEMORY, Sight
+from smash.execution.sight import MEMORY
 from smash.execution.stopwatch import Stopwatch
 from smash.motion.errors import NoIk
 from smash.motion.move import Move
@@ -64,7 +65,7 @@ class Performer:
         retries: How many picks were tried again.
     """
 
-    def __init__(self, world: World, grounder: Grounder, table: Geometry, policy: Policy, sight: Sight) -> None:
+    def __init__(self, world: World, grounder: Grounder, table: Geometry, policy: Policy, sight: Observer) -> None:
         self.world = world
         self.sight = sight
         self.grounder = grounder
@@ -87,7 +88,7 @@ class Performer:
 
     def look(self) -> Geometry:
         """Where things are, as far as it can be seen."""
-        return self.table.seen(self.sight.blocks(), self.world.carriers())
+        return self.table.seen(self.sight.blocks(), self.sight.carriers())
 
     def look_around(self) -> None:
         """Look for a while, where one look is not exact."""

@@ -37,7 +37,7 @@ class _Known:
 
 
 class Sight:
-    """The eyes of one episode.
+    """The eyes of one episode in simulation: an `Observer`.
 
     Args:
         world: What is looked at.
@@ -67,6 +67,10 @@ class Sight:
             if anew or block not in self._seen:
                 self._look(block, pose)
         return {block: self._told(known) for block, known in self._seen.items()}
+
+    def carriers(self) -> dict[str, BlockPose]:
+        """Poses of all carriers, which are seen as they are."""
+        return self._world.carriers()
 
     def spread(self, block: str) -> float:
         """How far a side of a block may be from where it is seen, a standard deviation [m]."""

@@ -12,6 +12,7 @@ from smash.problem.extras import EXECUTION, require, require_engine
 from smash.problem.files.given import GivenInstance, GivenPlan, given_instance, given_plan
 
 if TYPE_CHECKING:
+    from smash.execution.observer import Eyes
     from smash.execution.scene.tabletop import Tabletop
     from smash.records.episodes import Episode
 
@@ -27,6 +28,7 @@ def execute(
     pace: float | None = None,
     engine: str | None = None,
     robot: str | None = None,
+    observer: str | os.PathLike[str] | Eyes | None = None,
 ) -> Episode:
     """Carry a plan out with the Panda in simulation and say how it went. A failed execution is no exception.
 
@@ -44,6 +46,8 @@ def execute(
         pace: share of the arm's velocity and acceleration limits that motions use (None: what the scene says).
         engine: `pybullet` or `mujoco` (None: the scene's, else PyBullet, else MuJoCo where that is what is installed).
         robot: None; the Panda is the one that there is.
+        observer: where the blocks are seen: the path of a file of recorded poses (`smash-poses/1`), or what makes an
+            observer, `smash.execution.observer.Eyes` (None: the simulator, with the scene's noise).
 
     Returns:
         The episode: `success`, `failure` (name, step, action, reason), `engine`, times, and each action as
@@ -61,11 +65,21 @@ def execute(
         raise SmashError(f"robot: {robot!r} is not allowed; there is no choice of one, None is allowed")
     whole_number("seed", seed, 0, 2**31 - 1)
     problem = given_instance(instance)
+    if observer is not None and not (isinstance(observer, str | os.PathLike) or callable(observer)):
+        raise SmashError(f"observer: {observer!r} is not allowed; the path of a file of poses, or a function")
     if noise is not None:
         text("noise", noise)
     if pace is not None and (isinstance(pace, bool) or not isinstance(pace, int | float)):
         raise SmashError(f"pace: {pace!r} is not allowed; a number of 0.01 to 1")
     made = given_plan(plan, problem)
     return executor_of(
-        problem, made, seed=seed, replan=replan, scene=scene, noise=noise, pace=pace, engine=engine
+        problem,
+        made,
+        seed=seed,
+        replan=replan,
+        scene=scene,
+        noise=noise,
+        pace=pace,
+        engine=engine,
+        observer=observer,
     ).run()

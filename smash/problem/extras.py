@@ -22,6 +22,7 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "maxsat": ("pysat",),
     "docs": ("mkdocs", "material", "mkdocstrings"),
     "gym": ("gymnasium",),
+    "ros": ("mcap", "mcap_ros2"),
 }
 """Extra -> the modules that come with it."""
 

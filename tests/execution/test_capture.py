@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from smash.execution.viewing.capture import TRAJECTORY_INTERVAL, Capture, _thinned
+from smash.execution.viewing.capture import Capture
+from smash.execution.viewing.trajectory_file import TRAJECTORY_INTERVAL, thinned
 from smash.problem import MalformedFile
 from tests.execution.made_up import recording_of
 
@@ -17,7 +18,9 @@ def test_frames_are_taken_only_where_a_picture_is_asked_for(tmp_path):
     ]
 
 
-@pytest.mark.parametrize(("what", "name"), [("video", "film.avi"), ("stills", "stills.txt")])
+@pytest.mark.parametrize(
+    ("what", "name"), [("video", "film.avi"), ("stills", "stills.txt"), ("trajectory", "t.txt"), ("trajectory", "t")]
+)
 def test_a_file_that_cannot_be_written_is_refused_before_the_episode(tmp_path, what, name):
     with pytest.raises(MalformedFile, match=name) as refusal:
         Capture(**{what: tmp_path / name})
@@ -26,7 +29,7 @@ def test_a_file_that_cannot_be_written_is_refused_before_the_episode(tmp_path, w
 
 def test_a_trajectory_has_a_row_each_interval_of_simulated_time():
     samples = [(step / 480, np.zeros(7), 0.0) for step in range(481)]
-    times = [moment for moment, *_ in _thinned(samples)]
+    times = [moment for moment, *_ in thinned(samples)]
     assert times[0] == 0.0
     assert min(np.diff(times)) >= TRAJECTORY_INTERVAL - 1e-6
     assert max(np.diff(times)) < TRAJECTORY_INTERVAL + 1 / 480

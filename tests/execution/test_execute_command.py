@@ -74,6 +74,7 @@ def test_a_start_with_a_full_hand_is_one_line_and_exit_6(filed):
         (["--video", "film.txt"], 2),
         (["--replay", "nowhere/r.html"], 2),
         (["--stills", "still.txt"], 2),
+        (["--trajectory", "t.bag"], 2),
         (["--seed", "18446744073709551616"], 2),
         (["--budget", "nan"], 2),
         (["--replay", "plan.json/r.html"], 2),

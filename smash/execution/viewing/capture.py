@@ -1,38 +1,38 @@
-"""The files that `smash execute` can leave beside the episode: replay, film, stills, joint trajectory."""
+"""The files that `smash execute` can leave beside the episode: replay, film, stills, trajectory, looks."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from pathlib import Path
-
-import numpy as np
-from numpy.typing import NDArray
 
 from smash.execution.executor import Executor
 from smash.execution.physics.world import Frame
+from smash.execution.recorded_poses import Look, write_looks
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.viewing.film import FILM, Film, write_film
 from smash.execution.viewing.recording import Recording
-from smash.execution.viewing.trajectory_file import write_trajectory
+from smash.execution.viewing.ros_bag import write_bag
+from smash.execution.viewing.trajectory_file import thinned, write_trajectory
 from smash.problem.errors import MalformedFile
+from smash.problem.extras import require
 from smash.problem.files.documents import replacing
 from smash.records.episodes import Episode
 
 FILMS = (".mp4", ".gif")
 PICTURES = (".png", ".pdf", ".svg", ".jpg")
+ROS = ".mcap"
+TRAJECTORIES = (".csv", ROS)
 """How the names of what is written end."""
-
-Sample = tuple[float, NDArray[np.float64], float]
-
-TRAJECTORY_INTERVAL = 0.01
-"""Time between two rows of an exported trajectory [s]."""
 
 
 class Capture:
     """Records an episode where a file was asked for, and writes the files afterwards.
 
+    Attributes:
+        seen: Gets what the executor sees, where that is asked for.
+
     Raises:
-        MalformedFile: at once, where the name of a film or of stills ends in what cannot be written.
+        MalformedFile: at once, where the name of a film, of stills or of a trajectory ends in what cannot be written;
+            `MissingExtra` where what writes it is not installed.
     """
 
     def __init__(
@@ -42,30 +42,40 @@ class Capture:
         video: Path | None = None,
         stills: Path | None = None,
         trajectory: Path | None = None,
+        looks: Path | None = None,
         film: Film = FILM,
     ) -> None:
         self.film = film
         self.replay, self.video, self.stills, self.trajectory = replay, video, stills, trajectory
+        self.looks = looks
+        self.seen: list[Look] | None = None if looks is None else []
         _require_suffix(video, "a film", FILMS)
         _require_suffix(stills, "stills", PICTURES)
+        _require_suffix(trajectory, "a trajectory", TRAJECTORIES)
+        self._for_ros = trajectory is not None and trajectory.suffix == ROS
+        if self._for_ros:
+            require(f"--trajectory {trajectory}", "mcap_ros2")
         self.recording = Recording()
 
     @property
     def files(self) -> list[Path]:
         """What is asked for."""
-        return [path for path in (self.replay, self.video, self.stills, self.trajectory) if path is not None]
+        asked = (self.replay, self.video, self.stills, self.trajectory, self.looks)
+        return [path for path in asked if path is not None]
 
     @property
     def frame(self) -> Frame | None:
         """What the executor calls at each frame; None where nothing needs frames."""
-        return self.recording.take if self.replay or self.video or self.stills else None
+        return self.recording.take if self.replay or self.video or self.stills or self._for_ros else None
 
     def finish(self, executor: Executor, episode: Episode) -> None:
         """Write what was asked for, each file whole or not at all."""
         tabletop = executor.tabletop
         if self.trajectory is not None:
             with replacing(self.trajectory) as path:
-                write_trajectory(path, _thinned(executor.world.recorded))
+                self._write_trajectory(path, executor, episode)
+        if self.looks is not None:
+            write_looks(self.looks, self.seen or ())
         if self.replay is not None:
             from smash.execution.viewing.replay import write_replay
 
@@ -76,6 +86,14 @@ class Capture:
         if self.video is not None:
             with replacing(self.video) as path:
                 write_film(path, self.recording, tabletop, episode, self.film)
+
+    def _write_trajectory(self, path: Path, executor: Executor, episode: Episode) -> None:
+        recorded = executor.world.recorded
+        if self._for_ros:
+            end = executor.world.time, executor.ended
+            write_bag(path, recorded, self.recording, end, executor.tabletop, episode)
+        else:
+            write_trajectory(path, thinned(recorded))
 
     def _write_stills(self, path: Path, tabletop: Tabletop, episode: Episode) -> None:
         from smash.execution.viewing.pictures import write_stills
@@ -89,16 +107,6 @@ class Capture:
         end = "end" if episode.success else "end (failed)"
         captions = [("start", times[0]), ("after the topple" if toppled else "on the way", middle), (end, times[-1])]
         write_stills(path, self.recording, tabletop, captions)
-
-
-def _thinned(samples: Iterable[Sample]) -> Iterator[Sample]:
-    """Leave out samples that follow another one too closely."""
-    due = float("-inf")
-    for sample in samples:
-        moment = sample[0]
-        if moment >= due:
-            yield sample
-            due = moment + TRAJECTORY_INTERVAL - 1e-6
 
 
 def _require_suffix(path: Path | None, what: str, allowed: tuple[str, ...]) -> None:

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import csv
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,8 +22,25 @@ from smash.problem.errors import MalformedFile
 
 HEADER = ("time", *ARM_JOINTS, "finger_opening")
 
+Sample = tuple[float, NDArray[np.float64], float]
+"""A moment [s], what the arm was sent to [rad], shape (7,), and the fingers [m from the middle]."""
+Row = TypeVar("Row", bound=tuple[Any, ...])
 
-def write_trajectory(path: str | os.PathLike[str], samples: Iterable[tuple[float, NDArray[np.float64], float]]) -> None:
+TRAJECTORY_INTERVAL = 0.01
+"""Time between two rows of an exported trajectory [s]."""
+
+
+def thinned(rows: Iterable[Row]) -> Iterator[Row]:
+    """Leave out rows that follow another one too closely; the first entry of each is its time [s]."""
+    due = float("-inf")
+    for row in rows:
+        moment = row[0]
+        if moment >= due:
+            yield row
+            due = moment + TRAJECTORY_INTERVAL - 1e-6
+
+
+def write_trajectory(path: str | os.PathLike[str], samples: Iterable[Sample]) -> None:
     """Write commanded joint positions with their times.
 
     Args:

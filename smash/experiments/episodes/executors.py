@@ -12,7 +12,9 @@ from smash.problem.plan import Plan, check_plan
 
 if TYPE_CHECKING:
     from smash.execution.executor import Executor
+    from smash.execution.observer import Eyes
     from smash.execution.physics.world import Frame
+    from smash.execution.recorded_poses import Look
     from smash.execution.scene.tabletop import Tabletop
     from smash.records.episodes import Performed
 
@@ -32,6 +34,8 @@ def executor_of(
     replanner: str | None = None,
     budget: float = REPLAN_BUDGET,
     engine: str | None = None,
+    observer: str | os.PathLike[str] | Eyes | None = None,
+    looks: list[Look] | None = None,
     gui: bool = False,
     on_frame: Frame | None = None,
     on_step: Callable[[Performed], Any] | None = None,
@@ -49,6 +53,9 @@ def executor_of(
         replanner: planner to replan with (None: the plan's own); `greedy` where nobody is called so.
         budget: wall time of each replanning [s].
         engine: what simulates it (None: the scene's, else the one that is there).
+        observer: where the blocks are seen: the path of a `smash-poses/1` file, or what makes an observer (None: the
+            simulator, with the scene's noise).
+        looks: gets all that is seen.
         gui: show the engine's window.
         on_frame: called with the world 25 times a simulated second.
         on_step: called with each action before it is carried out.
@@ -56,16 +63,18 @@ def executor_of(
     Raises:
         RefusedPlan: where the law refuses the plan.
         Unsupported: where the hand holds a block at the start, or the engine is not installed.
-        SmashError: where the scene is malformed, or has no place for the instance.
+        SmashError: where the scene or the file of poses is malformed, or the scene has no place for the instance.
     """
     verdict = check_plan(instance, plan)
     if not verdict.accepted:
         raise RefusedPlan(f"the plan for {instance.name!r}: {verdict}")
     from smash.execution.executor import Executor
     from smash.execution.policy import OPEN
+    from smash.execution.recorded_poses import witnessed
     from smash.execution.scene.scene_file import scene_of
     from smash.experiments.episodes.replanning import replanner as replanner_by
 
+    eyes = _eyes_of(observer, instance)
     return Executor(
         instance,
         plan,
@@ -73,8 +82,19 @@ def executor_of(
         seed=seed,
         policy=None if replan else OPEN,
         replanner=replanner_by(replanner or plan.planner, budget, seed) if replan else None,
+        eyes=eyes if looks is None else witnessed(eyes, looks),
         engine=engine,
         gui=gui,
         on_frame=on_frame,
         on_step=on_step,
     )
+
+
+def _eyes_of(observer: str | os.PathLike[str] | Eyes | None, instance: Instance) -> Eyes:
+    """Return what makes the observer that is meant."""
+    from smash.execution.recorded_poses import recorded_eyes
+    from smash.execution.sight import Sight
+
+    if observer is None:
+        return Sight
+    return recorded_eyes(observer, instance) if isinstance(observer, str | os.PathLike) else observer
