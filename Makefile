@@ -15,7 +15,10 @@ help: ## list the targets
 needs-%: # .venv with these extras, as in needs-analysis-pddl; the packages for planning are always there
 	@.ci/environment $(VENV) $(subst cp sat,cp-sat,$(subst -, ,$(filter-out planning,$*)))
 
-physics: needs-execution
+physics: needs-execution # an engine: PyBullet, MuJoCo where that has no wheels
+	@$(BIN)/python -c 'from smash.problem.extras import default_engine, require_engine; require_engine(default_engine())' || exit 6
+
+pybullet: needs-execution
 	@$(BIN)/python -c 'import pybullet' 2>/dev/null || { echo 'smash: PyBullet has no wheels for the Python of $(VENV); make PYTHON=python3.11 $(MAKECMDGOALS)' >&2; exit 6; }
 
 install: needs-planning ## set up .venv for planning
@@ -136,6 +139,24 @@ paces-full: needs-analysis-execution physics ## the same on 20 instances a setti
 	$(BIN)/python -m smash episodes runs/paces-full --jobs 2
 	$(BIN)/python -m smash episodes runs/paces-full --jobs 2 --pace 0.1 --pace 0.25
 	$(BIN)/python -m smash_analysis.paces runs/paces-full
+
+engines: needs-analysis-execution-mujoco pybullet ## the same plans and topples in both engines: success, failures, time, landings, disagreements (about 8 minutes on 2 quiet cores; it can be resumed)
+	$(BIN)/python -m smash sweep experiments/engines.toml --out runs/engines
+	for engine in pybullet mujoco; do \
+	  $(BIN)/python -m smash episodes runs/engines --policy open --engine $$engine --jobs 2 && \
+	  $(BIN)/python -m smash topple-map --highest-cut 3 --most 6 --engine $$engine --jobs 2 --out runs/engines/landings/$$engine \
+	    || exit 1; done
+	$(BIN)/python -m smash_analysis.engines runs/engines
+
+engines-full: needs-analysis-execution-mujoco pybullet ## the same on a third of the committed sets, 7 instances of 20, open pipeline and replanning, ten topples of each size (hours, said first; it can be resumed)
+	$(BIN)/python -m smash sweep experiments/engines-full.toml --out runs/engines-full
+	for engine in pybullet mujoco; do \
+	  $(BIN)/python -m smash episodes runs/engines-full --policy open --policy replan --engine $$engine --jobs 2 --dry-run || exit 1; done
+	for engine in pybullet mujoco; do \
+	  $(BIN)/python -m smash episodes runs/engines-full --policy open --policy replan --engine $$engine --jobs 2 && \
+	  $(BIN)/python -m smash topple-map --seeds 10 --engine $$engine --jobs 2 --out runs/engines-full/landings/$$engine \
+	    || exit 1; done
+	$(BIN)/python -m smash_analysis.engines runs/engines-full
 
 topple-map: needs-analysis-execution physics ## where toppled blocks land, per cut height and number (minutes)
 	$(BIN)/python -m smash topple-map --jobs 2 --out runs/topple-map
