@@ -140,7 +140,7 @@ paces-full: needs-analysis-execution physics ## the same on 20 instances a setti
 	$(BIN)/python -m smash episodes runs/paces-full --jobs 2 --pace 0.1 --pace 0.25
 	$(BIN)/python -m smash_analysis.paces runs/paces-full
 
-engines: needs-analysis-execution-mujoco pybullet ## the same plans and topples in both engines: success, failures, time, landings, disagreements (about 8 minutes on 2 quiet cores; it can be resumed)
+engines: needs-analysis-execution-mujoco pybullet ## the same plans and topples in both engines: success, failures, time, landings, disagreements (about 12 minutes on 2 quiet cores; it can be resumed)
 	$(BIN)/python -m smash sweep experiments/engines.toml --out runs/engines
 	for engine in pybullet mujoco; do \
 	  $(BIN)/python -m smash episodes runs/engines --policy open --engine $$engine --jobs 2 && \
