@@ -15,8 +15,8 @@ TOPPLE = ["layout", "stack", "height", "falling", "seed"]
 """What a topple is, whatever simulates it."""
 LEGEND = (
     "The same piles, toppled in both. Rank 1 is the block that lies least far along the push (below zero: on the "
-    "other side of the pile); `apart` is how far the two engines' blocks of a rank are from each other, along the push. A "
-    "topple goes well where the rest still stands and every toppled block can be grasped where it lies."
+    "other side of the pile); `apart` is how far the two engines' blocks of a rank are from each other, along it. "
+    "A topple goes well where the rest still stands and every toppled block can be grasped where it lies."
 )
 
 
@@ -33,8 +33,8 @@ def read_landings(directory: Path) -> list[Trial]:
 def paired_landings(trials: Sequence[Trial], engines: tuple[str, str]) -> pd.DataFrame:
     """Return a row per topple that both engines did: `TOPPLE`, and of each engine (`_left`, `_right`) how it went.
 
-    Columns of each: good (whether it went well), stands, moved (of the rest) [m], along (of each block, the least first,
-    [m]; empty where there was no push), why (it did not go well).
+    Columns of each: good (whether it went well), stands, moved (of the rest) [m], along (of each block, the least
+    first, [m]; empty where there was no push), why (it did not go well).
     """
     sides = []
     for engine in engines:

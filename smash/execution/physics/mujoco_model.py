@@ -65,7 +65,17 @@ def build(
     carriers: Mapping[str, BlockPose],
     made: Mapping[str, Made],
 ) -> Any:
-    """Compile the model of an episode's start.
+    """Compile the model of an episode's start (the arguments are those of `specification`)."""
+    return specification(tabletop, blocks, carriers, made).compile()
+
+
+def specification(
+    tabletop: Tabletop,
+    blocks: Mapping[str, BlockPose],
+    carriers: Mapping[str, BlockPose],
+    made: Mapping[str, Made],
+) -> Any:
+    """Return the model of an episode's start before it is compiled.
 
     Args:
         tabletop: Sizes, masses, friction.
@@ -91,7 +101,7 @@ def build(
         _pair_blocks(spec, tabletop.friction, made)
     for name, pose in carriers.items():
         _add_tray(spec, tabletop, carrier_body(name), pose)
-    return spec.compile()
+    return spec
 
 
 @cache

@@ -13,6 +13,7 @@ from smash.execution.physics.world import Frame
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.viewing.film import FILM, Film, write_film
 from smash.execution.viewing.recording import Recording
+from smash.execution.viewing.stage import require_painter
 from smash.execution.viewing.trajectory_file import write_trajectory
 from smash.problem.errors import MalformedFile
 from smash.problem.files.documents import replacing
@@ -33,6 +34,7 @@ class Capture:
 
     Raises:
         MalformedFile: at once, where the name of a film or of stills ends in what cannot be written.
+        Unsupported: at once, where nothing can draw them here.
     """
 
     def __init__(
@@ -48,6 +50,8 @@ class Capture:
         self.replay, self.video, self.stills, self.trajectory = replay, video, stills, trajectory
         _require_suffix(video, "a film", FILMS)
         _require_suffix(stills, "stills", PICTURES)
+        if video or stills:
+            require_painter()
         self.recording = Recording()
 
     @property
