@@ -100,9 +100,16 @@ class MujocoStage(Stage):
             shape.rgba = [*colour, 1.0]
         for slot in tabletop.slots:
             half, colour = slot_look(slot, tabletop.side)
-            turn = [np.cos(slot.angle / 2), 0.0, 0.0, np.sin(slot.angle / 2)]
-            mark = spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=half, quat=turn)
-            mark.pos, mark.rgba, mark.contype, mark.conaffinity = [slot.x, slot.y, half[2]], [*colour, 1.0], 0, 0
+            turn, place = [np.cos(slot.angle / 2), 0.0, 0.0, np.sin(slot.angle / 2)], [slot.x, slot.y, half[2]]
+            spec.worldbody.add_geom(
+                type=mujoco.mjtGeom.mjGEOM_BOX,
+                size=half,
+                pos=place,
+                quat=turn,
+                rgba=[*colour, 1.0],
+                contype=0,
+                conaffinity=0,
+            )
         _light(spec, shadows=not self._coarse)
         return spec.compile()
 
