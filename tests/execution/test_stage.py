@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from smash.execution.scene.scene_file import default_scene
-from smash.execution.viewing import stage as stages
+from smash.execution.viewing import painters
+from smash.execution.viewing.stage import block_colours
 from smash.problem.errors import Unsupported
 from tests.execution.made_up import recording_of
 
@@ -36,7 +37,7 @@ def middle(picture, colour):
 
 def test_both_stages_show_a_block_at_the_same_place():
     pytest.importorskip("pybullet")
-    colour = stages.block_colours(1)[0]
+    colour = block_colours(1)[0]
     first, second = (middle(taken(kind, 1), colour) for kind in ("pybullet", "mujoco"))
     assert np.abs(first - second).max() <= 2
 
@@ -48,7 +49,7 @@ def test_without_opengl_pictures_are_refused_in_one_line_before_the_episode(monk
         raise AttributeError("'NoneType' object has no attribute 'glGetError'\nand more")
 
     monkeypatch.setattr(module, "import_module", none)
-    monkeypatch.setattr(stages, "is_there", lambda module: module != "pybullet")
+    monkeypatch.setattr(painters, "is_there", lambda module: module != "pybullet")
     with pytest.raises(Unsupported, match="MuJoCo draws by OpenGL, and egl cannot be had here") as refusal:
-        stages.require_painter()
+        painters.require_painter()
     assert "\n" not in str(refusal.value)

@@ -12,8 +12,8 @@ from smash.execution.executor import Executor
 from smash.execution.physics.world import Frame
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.viewing.film import FILM, Film, write_film
+from smash.execution.viewing.painters import require_painter
 from smash.execution.viewing.recording import Recording
-from smash.execution.viewing.stage import require_painter
 from smash.execution.viewing.trajectory_file import write_trajectory
 from smash.problem.errors import MalformedFile
 from smash.problem.files.documents import replacing

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from smash.execution.scene.tabletop import Tabletop
+from smash.execution.viewing.painters import stage_class
 from smash.execution.viewing.recording import Recording
-from smash.execution.viewing.stage import CAMERA, Camera, Image, stage_class
+from smash.execution.viewing.stage import CAMERA, Camera, Image
 from smash.problem.errors import SmashError
 from smash.records.episodes import Episode
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from smash.execution.scene.tabletop import Tabletop
+from smash.execution.viewing.painters import stage_class
 from smash.execution.viewing.recording import Recording
-from smash.execution.viewing.stage import stage_class
 
 SIZE = (960, 640)
 """Width and height of a picture [pixels]."""

@@ -1,8 +1,4 @@
-"""What pictures of a recorded episode are drawn with: a stage of robot, table and blocks, whatever paints it.
-
-PyBullet's software renderer paints wherever PyBullet is installed; elsewhere MuJoCo does, which needs OpenGL without a
-window (EGL or OSMesa). Pictures are of what was recorded: which engine simulated it makes no difference.
-"""
+"""What pictures of a recorded episode are drawn with: a stage of robot, table and blocks, whatever paints it."""
 
 from __future__ import annotations
 
@@ -16,7 +12,6 @@ from numpy.typing import NDArray
 
 from smash.execution.scene.tabletop import Slot, Tabletop
 from smash.execution.viewing.recording import Recording
-from smash.problem.extras import is_there
 from smash.problem.pictures import PALETTE
 
 TRAY_COLOUR = (0.62, 0.47, 0.30)
@@ -103,26 +98,3 @@ class Stage(ABC):
     @abstractmethod
     def photograph(self, size: tuple[int, int], camera: Camera = CAMERA) -> Image:
         """A picture of the table of this width and height [pixels], shape (height, width, 3)."""
-
-
-def stage_class() -> type[Stage]:
-    """Return what paints here: PyBullet's stage where it is installed, else MuJoCo's."""
-    if is_there("pybullet"):
-        from smash.execution.viewing.pybullet_stage import PyBulletStage
-
-        return PyBulletStage
-    from smash.execution.viewing.mujoco_stage import MujocoStage
-
-    return MujocoStage
-
-
-def require_painter() -> None:
-    """Refuse pictures that nothing can paint, before an episode is carried out for them.
-
-    Raises:
-        Unsupported: where MuJoCo would paint and there is no OpenGL.
-    """
-    if not is_there("pybullet"):
-        from smash.execution.viewing.mujoco_stage import open_context
-
-        open_context((1, 1)).free()
