@@ -16,13 +16,16 @@ needs-%: # .venv with these extras, as in needs-analysis-pddl; the packages for 
 	@.ci/environment $(VENV) $(subst cp sat,cp-sat,$(subst -, ,$(filter-out planning,$*)))
 
 physics: needs-execution
+	@$(BIN)/python -c 'import pybullet' 2>/dev/null || $(BIN)/python -c 'import mujoco' 2>/dev/null || { echo 'smash: no physics engine is installed in $(VENV): PyBullet or MuJoCo' >&2; exit 6; }
+
+pybullet: needs-execution
 	@$(BIN)/python -c 'import pybullet' 2>/dev/null || { echo 'smash: PyBullet has no wheels for the Python of $(VENV); make PYTHON=python3.11 $(MAKECMDGOALS)' >&2; exit 6; }
 
 install: needs-planning ## set up .venv for planning
 	@echo 'smash: ready. $(BIN)/smash plan examples/figure1.json (or first: source $(BIN)/activate)'
 
 install-all: needs-all-dev ## set up .venv with all that its Python can have, and the tools of developers
-	@$(BIN)/python -c 'import pybullet' 2>/dev/null || echo 'smash: execution is left out: PyBullet has no wheels for this Python (3.11 has them)'
+	@$(BIN)/python -c 'import pybullet' 2>/dev/null || echo 'smash: episodes are simulated by MuJoCo: PyBullet has no wheels for this Python (3.11 has them)'
 	@echo 'smash: ready. $(BIN)/smash plan examples/figure1.json (or first: source $(BIN)/activate)'
 
 docs: needs-analysis-docs ## build the documentation as a site that is read offline: site/index.html (half a minute)
@@ -136,6 +139,24 @@ paces-full: needs-analysis-execution physics ## the same on 20 instances a setti
 	$(BIN)/python -m smash episodes runs/paces-full --jobs 2
 	$(BIN)/python -m smash episodes runs/paces-full --jobs 2 --pace 0.1 --pace 0.25
 	$(BIN)/python -m smash_analysis.paces runs/paces-full
+
+engines: needs-analysis-execution-mujoco pybullet ## the same plans and topples in both engines: success, failures, time, landings, disagreements (about 12 minutes on 2 quiet cores; it can be resumed)
+	$(BIN)/python -m smash sweep experiments/engines.toml --out runs/engines
+	for engine in pybullet mujoco; do \
+	  $(BIN)/python -m smash episodes runs/engines --policy open --engine $$engine --jobs 2 && \
+	  $(BIN)/python -m smash topple-map --highest-cut 3 --most 6 --engine $$engine --jobs 2 --out runs/engines/landings/$$engine \
+	    || exit 1; done
+	$(BIN)/python -m smash_analysis.engines runs/engines
+
+engines-full: needs-analysis-execution-mujoco pybullet ## the same on a third of the committed sets, 7 instances of 20, open pipeline and replanning, ten topples of each size (hours, said first; it can be resumed)
+	$(BIN)/python -m smash sweep experiments/engines-full.toml --out runs/engines-full
+	for engine in pybullet mujoco; do \
+	  $(BIN)/python -m smash episodes runs/engines-full --policy open --policy replan --engine $$engine --jobs 2 --dry-run || exit 1; done
+	for engine in pybullet mujoco; do \
+	  $(BIN)/python -m smash episodes runs/engines-full --policy open --policy replan --engine $$engine --jobs 2 && \
+	  $(BIN)/python -m smash topple-map --seeds 10 --engine $$engine --jobs 2 --out runs/engines-full/landings/$$engine \
+	    || exit 1; done
+	$(BIN)/python -m smash_analysis.engines runs/engines-full
 
 topple-map: needs-analysis-execution physics ## where toppled blocks land, per cut height and number (minutes)
 	$(BIN)/python -m smash topple-map --jobs 2 --out runs/topple-map

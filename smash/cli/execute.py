@@ -88,11 +88,11 @@ def command(
     if engine is not None:
         require_engine(engine)
     if video is not None:
-        require("smash execute --video", "imageio", "pybullet")
+        require("smash execute --video", "imageio")
     elif any(option is not None for option in (video_size, video_speed, video_camera)):
         raise click.UsageError("--video-size, --video-speed and --video-camera go with --video")
     if stills is not None:
-        require("smash execute --stills", "matplotlib", "pybullet")
+        require("smash execute --stills", "matplotlib")
     require_writable(replay, video, stills, trajectory, looks, out)
     if replanner is not None:
         _require_planner(replanner, no_replan)

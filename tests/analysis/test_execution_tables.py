@@ -10,6 +10,7 @@ from smash_analysis.execution_tables import (
     read_episodes,
     slower_table,
 )
+from smash_analysis.report.appendix import commands
 from smash_analysis.report.sources import find_sources
 
 from smash.problem.errors import MalformedFile
@@ -184,5 +185,15 @@ def test_episodes_of_two_engines_make_no_table(tmp_path):
     words = r"episodes of several engines \(1 by mujoco, 1 by pybullet\) make no table"
     with pytest.raises(MixedEngines, match=words):
         read_episodes(tmp_path)
-    with pytest.raises(MixedEngines, match=words):
-        find_sources(tmp_path, tmp_path / "report")
+
+
+def test_the_report_shows_each_engine_apart(tmp_path):
+    records = [record("i", "topple", 60.0), {**record("i", "topple", 60.0, seed=1), "engine": "mujoco"}]
+    (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(entry) + "\n" for entry in records))
+    sources = find_sources(tmp_path, tmp_path / "report")
+    assert [source.title for source in sources] == [f"{tmp_path.name}, pybullet", f"{tmp_path.name}, mujoco"]
+    assert [[each.seed for each in source.episodes] for source in sources] == [[0], [1]]
+    assert commands(sources[1]) == [
+        f"smash episodes again/{tmp_path.name} --seeds 2 --policy open --engine mujoco",
+        f"python -m smash_analysis.engines again/{tmp_path.name}    # both engines, paired",
+    ]

@@ -147,11 +147,12 @@ def test_the_observed_instance_keeps_what_stands_on_the_carriers():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(3))
-def test_blocks_stay_on_a_carried_tray(seed):
+@pytest.mark.parametrize(("engine", "seed"), [("pybullet", 0), ("pybullet", 1), ("pybullet", 2), ("mujoco", 0)])
+def test_blocks_stay_on_a_carried_tray(engine, seed):
+    pytest.importorskip(engine)
     instance = loaded(start={}, blocks=["a", "c"], goal=PositionsGoal({"a": ("g1", 1), "c": ("g2", 1)}))
     actions = [Carry("tray", "right"), Pick("a", "tray"), Place("a", "g1"), Pick("c", "tray"), Place("c", "g2")]
-    episode = Executor(instance, plan_of("scoop", *actions), scoop_scene(), seed=seed, policy=OPEN).run()
+    episode = Executor(instance, plan_of("scoop", *actions), scoop_scene(), seed=seed, policy=OPEN, engine=engine).run()
     assert episode.success, episode.failure
     assert episode.final.stations == {"tray": "right"}
 

@@ -228,6 +228,14 @@ def test_a_stage_after_several_uses_those_that_there_are(stages, tmp_path):
     assert "nothing to do" in reproduce(file, tmp_path / "out").stdout
 
 
+def test_of_alternatives_one_is_enough(stages, tmp_path):
+    file = stages(
+        stage("one", "a", 'requires = ["no-such-package or numpy"]'),
+        stage("two", "b", LACKS.replace('e"]', 'e or other"]')),
+    )
+    assert [each.lacking() for each in read_stages(file).stages] == [[], ["no-such-package or other"]]
+
+
 LACKS = 'requires = ["no-such-package"]'
 
 

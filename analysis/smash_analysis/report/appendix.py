@@ -85,17 +85,18 @@ def commands(source: Source) -> list[str]:
     """Return the commands that make the records of a source again, in a place of their own, then each part of them."""
     path = shlex.quote(f"again/{source.name}")
     lines: list[str] = []
+    engine = f" --engine {source.engine}" if source.engine else ""
     if source.runs:
         lines += [_runs(source, path), f"smash records check {path}"]
     if source.episodes:
         seeds = max(record.seed for record in source.episodes) + 1
         policies = " ".join(f"--policy {policy}" for policy in dict.fromkeys(r.policy for r in source.episodes))
-        lines.append(f"smash episodes {path} --seeds {seeds} {policies}")
+        lines.append(f"smash episodes {path} --seeds {seeds} {policies}{engine}")
     if source.trials:
         cut, most, seed = (
             max(getattr(trial, name) for trial in source.trials) for name in ("height", "falling", "seed")
         )
-        lines.append(f"smash topple-map --highest-cut {cut} --most {most} --seeds {seed + 1} --out {path}")
+        lines.append(f"smash topple-map --highest-cut {cut} --most {most} --seeds {seed + 1}{engine} --out {path}")
     if source.scaling is not None:
         table = source.scaling
         lines.append(
@@ -113,7 +114,7 @@ def _modules(source: Source) -> Iterator[tuple[str, str]]:
     if source.scaling is not None or len({record.blocks for record in source.runs}) >= SIZES_FOR_CURVES:
         yield "scaling", "curves over blocks"
     if source.episodes:
-        yield "execution_tables", "Tables I and II"
+        yield ("engines", "both engines, paired") if source.apart else ("execution_tables", "Tables I and II")
 
 
 def _runs(source: Source, path: str) -> str:

@@ -45,7 +45,7 @@ def section(source: Source) -> Section:
         blocks.insert(0, Words("contradictions", "Contradictions between planners", source.contradictions))
     if source.problems:
         blocks.insert(0, Words("unread", "What could not be read", [str(problem) for problem in source.problems]))
-    return Section(source.name, source.name, _lead(source), headlines, figures, blocks, appendix(source), stores)
+    return Section(source.title, source.title, _lead(source), headlines, figures, blocks, appendix(source), stores)
 
 
 def _lead(source: Source) -> str:

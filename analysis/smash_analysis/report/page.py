@@ -90,7 +90,7 @@ def make(results: Path, out: Path, said: Callable[[str], None] = lambda _: None)
     sections, files, shown = [], [], []
     for source in find_sources(results, out, said):
         kinds = ((source.runs, "run"), (source.episodes, "episode"), (source.trials, "topple"))
-        said(f"{source.name}: {', '.join(counted(len(records), kind) for records, kind in kinds)}")
+        said(f"{source.title}: {', '.join(counted(len(records), kind) for records, kind in kinds)}")
         made = section(source)
         slug = slugs(made.name)
         names = [slugs(f"{slug}-{block.name}") for block in made.blocks]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import pandas as pd
@@ -13,7 +13,6 @@ import pandas as pd
 from smash.problem.errors import MalformedFile
 from smash.problem.words import visible
 from smash.records.believing import believed
-from smash.records.engines import require_one_engine
 from smash.records.episodes import EpisodeRecord
 from smash.records.files import EPISODES, RUNS, TRIALS, R, RecordFile
 from smash.records.reading import NoRecords, Reading, read
@@ -27,11 +26,13 @@ FILES = (RUNS.name, EPISODES.name, TRIALS.name)
 
 @dataclass(slots=True)
 class Source:
-    """One directory with records.
+    """One directory with records, or what one engine simulated of it where several did.
 
     Attributes:
         name: Its path below RESULTS; RESULTS' own name where it is RESULTS itself.
         path: The directory.
+        engine: What simulated its episodes and topples; empty where there are none.
+        apart: Whether other engines simulated others of the directory, which are a source of their own.
         runs: Records of `runs.jsonl`; `episodes` and `trials` likewise.
         scaling: `scaling.csv`, where the records behind it were not kept.
         problems: Files that cannot be read.
@@ -41,6 +42,8 @@ class Source:
 
     name: str
     path: Path
+    engine: str = ""
+    apart: bool = False
     runs: list[RunRecord] = field(default_factory=list)
     episodes: list[EpisodeRecord] = field(default_factory=list)
     trials: list[Trial] = field(default_factory=list)
@@ -48,6 +51,11 @@ class Source:
     problems: list[MalformedFile] = field(default_factory=list)
     contradictions: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+
+    @property
+    def title(self) -> str:
+        """What the report calls it."""
+        return f"{self.name}, {self.engine}" if self.apart else self.name
 
     @property
     def empty(self) -> bool:
@@ -76,11 +84,11 @@ def find_sources(results: Path, out: Path, said: Callable[[str], None] = lambda 
 
     Raises:
         NoRecords: where there is no record at all.
-        MixedEngines: where a directory's episodes or topples were simulated by several engines.
     """
     if not results.is_dir():
         raise NoRecords(str(results), "no such directory")
-    sources = [_read(directory, results, said) for directory in _directories(results, out.resolve())]
+    directories = _directories(results, out.resolve())
+    sources = [source for directory in directories for source in _by_engine(_read(directory, results, said))]
     if all(source.empty for source in sources):
         problems = [problem for source in sources for problem in source.problems]
         if problems:
@@ -114,11 +122,30 @@ def _read(directory: Path, results: Path, said: Callable[[str], None]) -> Source
         source.notes += [visible(line) for line in found.rest()]
     source.episodes = _records(source, EPISODES)
     source.trials = _records(source, TRIALS)
-    require_one_engine(source.name, "episodes", (record.engine for record in source.episodes))
-    require_one_engine(source.name, "topples", (trial.engine for trial in source.trials))
     if not source.runs and (directory / SCALING).is_file():
         source.scaling = _scaling(directory / SCALING, source.problems)
     return source
+
+
+def _by_engine(source: Source) -> list[Source]:
+    """Return a source for each engine: what was simulated by several makes no table. Plans stand with the first."""
+    simulated = [*(each.engine for each in source.episodes), *(each.engine for each in source.trials)]
+    engines = list(dict.fromkeys(simulated))
+    if len(engines) < 2:
+        return [replace(source, engine="".join(engines))]
+    parts = [
+        Source(
+            source.name,
+            source.path,
+            engine,
+            apart=True,
+            episodes=[record for record in source.episodes if record.engine == engine],
+            trials=[trial for trial in source.trials if trial.engine == engine],
+        )
+        for engine in engines
+    ]
+    first = replace(source, engine=engines[0], apart=True, episodes=parts[0].episodes, trials=parts[0].trials)
+    return [first, *parts[1:]]
 
 
 def _records(source: Source, kind: RecordFile[R]) -> list[R]:

@@ -31,7 +31,7 @@ IMPEDANCE_RATIO = 10.0
 """Friction is so much stiffer than what keeps bodies apart."""
 CONTACT = (0.004, 1.0)
 """Time constant [s] and damping ratio of contacts. MuJoCo's own 0.02 s lets piles sag; with less, a block that falls
-far bounces and slides on by up to 20 cm."""
+far bounces and slides on."""
 GRASP = (2 * HOLDING_STEP, 1.0)
 """Of what the fingers touch, the stiffest that is stable (with the longer step MuJoCo takes twice that one)."""
 IMPEDANCE = (0.95, 0.99, 0.001, 0.5, 2.0)
@@ -65,7 +65,17 @@ def build(
     carriers: Mapping[str, BlockPose],
     made: Mapping[str, Made],
 ) -> Any:
-    """Compile the model of an episode's start.
+    """Compile the model of an episode's start (the arguments are those of `specification`)."""
+    return specification(tabletop, blocks, carriers, made).compile()
+
+
+def specification(
+    tabletop: Tabletop,
+    blocks: Mapping[str, BlockPose],
+    carriers: Mapping[str, BlockPose],
+    made: Mapping[str, Made],
+) -> Any:
+    """Return the model of an episode's start before it is compiled.
 
     Args:
         tabletop: Sizes, masses, friction.
@@ -91,7 +101,7 @@ def build(
         _pair_blocks(spec, tabletop.friction, made)
     for name, pose in carriers.items():
         _add_tray(spec, tabletop, carrier_body(name), pose)
-    return spec.compile()
+    return spec
 
 
 @cache

@@ -9,6 +9,7 @@ from smash.execution.physics.world import Frame
 from smash.execution.recorded_poses import Look, write_looks
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.viewing.film import FILM, Film, write_film
+from smash.execution.viewing.painters import require_painter
 from smash.execution.viewing.recording import Recording
 from smash.execution.viewing.ros_bag import write_bag
 from smash.execution.viewing.trajectory_file import thinned, write_trajectory
@@ -31,8 +32,8 @@ class Capture:
         seen: Gets what the executor sees, where that is asked for.
 
     Raises:
-        MalformedFile: at once, where the name of a film, of stills or of a trajectory ends in what cannot be written;
-            `MissingExtra` where what writes it is not installed.
+        MalformedFile: at once, where the name of a film, of stills or of a trajectory ends in what cannot be written.
+        Unsupported: at once, where nothing can draw them here, or what writes a trajectory is not installed.
     """
 
     def __init__(
@@ -55,6 +56,8 @@ class Capture:
         self._for_ros = trajectory is not None and trajectory.suffix == ROS
         if self._for_ros:
             require(f"--trajectory {trajectory}", "mcap_ros2")
+        if video or stills:
+            require_painter()
         self.recording = Recording()
 
     @property

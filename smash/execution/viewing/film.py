@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from smash.execution.scene.tabletop import Tabletop
-from smash.execution.viewing.pictures import CAMERA, Camera, Image, Stage
+from smash.execution.viewing.painters import stage_class
 from smash.execution.viewing.recording import Recording
+from smash.execution.viewing.stage import CAMERA, Camera, Image
 from smash.problem.errors import SmashError
 from smash.records.episodes import Episode
 
@@ -103,7 +104,7 @@ def film_frames(times: Sequence[float], speed: float = FILM.speed) -> list[int]:
 
 def _images(recording: Recording, tabletop: Tabletop, episode: Episode, film: Film) -> Iterator[Image]:
     width, height = film.size
-    with Stage(tabletop, len(recording.blocks[0]), len(recording.trays[0]), coarse=True) as stage:
+    with stage_class()(tabletop, len(recording.blocks[0]), len(recording.trays[0]), coarse=True) as stage:
         for frame in film_frames(recording.times, film.speed):
             stage.pose(recording, frame)
             moment = recording.times[frame]

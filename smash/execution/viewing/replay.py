@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from smash.execution.scene.tabletop import Tabletop
-from smash.execution.viewing.pictures import block_colours
 from smash.execution.viewing.recording import Recording
+from smash.execution.viewing.stage import block_colours
 from smash.motion.robot import panda_urdf
 from smash.problem.files.documents import write_text
 from smash.problem.model import Goal, Instance, OnGoal, PositionsGoal, StacksGoal, no_goal

@@ -22,7 +22,7 @@ import msgspec
 
 from smash.experiments.environment import commit, load
 from smash.experiments.isolation.lifetime import end_with_parent
-from smash.experiments.reproduction.stages import MadeFrom, Stage, Stages, file_hash, made_from
+from smash.experiments.reproduction.stages import OR, MadeFrom, Stage, Stages, file_hash, made_from
 from smash.problem.errors import MalformedFile
 from smash.problem.extras import install_line, is_known
 from smash.problem.files.documents import convert, parse_json, read_bytes, write_text
@@ -298,5 +298,6 @@ def last_line(log: Path) -> str:
 
 def _how_to_get(packages: Sequence[str]) -> str:
     """Return the lines that install packages, in brackets; nothing where no extra brings them."""
-    lines = dict.fromkeys(install_line(package) for package in packages if is_known(package))
+    first = [words.split(OR)[0] for words in packages]
+    lines = dict.fromkeys(install_line(package) for package in first if is_known(package))
     return f" ({'; '.join(lines)})" if lines else ""

@@ -25,7 +25,9 @@ from smash.problem.errors import MalformedFile
 from smash.problem.files.documents import convert, parse_toml, read_bytes
 
 PROGRAMS = {"smash": (sys.executable, "-m", "smash"), "python": (sys.executable,)}
-PACKAGES = ("coal", "matplotlib", "ompl", "pandas", "pin", "pybullet", "toppra")
+OR = " or "
+"""Between packages of which one is enough."""
+PACKAGES = ("coal", "matplotlib", "mujoco", "ompl", "pandas", "pin", "pybullet", "toppra")
 """Distributions that decide what is made, beside those that decide what a planner answers."""
 
 
@@ -34,8 +36,8 @@ class Stage(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
     `minutes` is the estimated time on 2 quiet cores; `products` are patterns below `{out}`, each of which must be met;
     `after` names earlier stages whose products it uses, as far as there are any; `requires` packages without which it
-    is not run; `leaves_out` says what of the whole it does not do, and why; `not_copied` are products that are too
-    large for `--copy-to`.
+    is not run (`a or b`: without either); `leaves_out` says what of the whole it does not do, and why; `not_copied` are
+    products that are too large for `--copy-to`.
     """
 
     name: str
@@ -61,7 +63,7 @@ class Stage(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
     def lacking(self) -> list[str]:
         """Return the required packages that are not installed."""
-        return [package for package in self.requires if not _installed(package)]
+        return [words for words in self.requires if not any(map(_installed, words.split(OR)))]
 
 
 class Stages(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
