@@ -29,7 +29,6 @@ from numpy.typing import NDArray
 from smash.execution.scene.block_pose import quaternion_of
 from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.tabletop import Tabletop
-from smash.execution.viewing.pictures import TRAY_COLOUR, block_colours
 from smash.execution.viewing.recording import Recording
 from smash.execution.viewing.ros_messages import (
     CUBE,
@@ -40,6 +39,7 @@ from smash.execution.viewing.ros_messages import (
     TRANSFORMS,
     definition,
 )
+from smash.execution.viewing.stage import TRAY_COLOUR, block_colours
 from smash.execution.viewing.trajectory_file import Sample, thinned
 from smash.motion.robot import ARM_JOINTS
 from smash.problem.files.documents import one_key_a_line
