@@ -23,9 +23,9 @@ from smash_analysis.command import fail
 from smash_analysis.execution_tables import WITHOUT, paired_table, read_episodes
 from smash_analysis.statistics.intervals import success_rate, wilson
 from smash_analysis.tables.believed import records_of
+from smash_analysis.tables.scenes import DEFAULT
 from smash_analysis.tables.writing import RATES, SPREADS, markdown, rate_cell
 
-DEFAULT = "default"
 SETTING = ["benchmark", "blocks", "label", "variant", "policy"]
 """What episodes have in common that are compared between scenes."""
 LEGEND = (

@@ -14,6 +14,7 @@ from smash_analysis.execution_tables import read_episodes
 from smash_analysis.statistics.intervals import bootstrap, bootstrap_ratio
 from smash_analysis.tables.believed import runs_of
 from smash_analysis.tables.latex import write_latex
+from smash_analysis.tables.scenes import by_scene
 from smash_analysis.tables.writing import SPREADS, markdown, with_spread, write_csv
 
 BASELINE = "no-topple-no-carry-no-lift"
@@ -112,7 +113,7 @@ def make(results: Path, out: Path) -> list[Path]:
     Raises:
         MalformedFile: where there are no runs or no episodes, or they are damaged.
     """
-    table = scoop_table(runs_of(results), read_episodes(results))
+    table = scoop_table(runs_of(results), by_scene(read_episodes(results)))
     out.mkdir(parents=True, exist_ok=True)
     files = [out / "scoop.md", out / "scoop.csv"]
     files[0].write_text(f"# The scoop\n\n{LEGEND}\n\n{markdown(table)}", encoding="utf-8")

@@ -11,6 +11,7 @@ from smash_analysis.execution_tables import (
     slower_table,
 )
 from smash_analysis.report.sources import find_sources
+from smash_analysis.tables.scenes import SEVERAL, by_scene
 
 from smash.problem.errors import MalformedFile
 from smash.records.engines import MixedEngines
@@ -186,3 +187,20 @@ def test_episodes_of_two_engines_make_no_table(tmp_path):
         read_episodes(tmp_path)
     with pytest.raises(MixedEngines, match=words):
         find_sources(tmp_path, tmp_path / "report")
+
+
+def test_scenes_are_not_put_together(tmp_path):
+    records = [
+        record("a", variant, seconds * slower) | {"scene": scene, "key": f"{variant}/{scene}"}
+        for scene, slower in ((None, 1.0), ("default pace=0.1", 3.0))
+        for variant, seconds in (("topple", 33.0), ("no-topple", 30.0))
+    ]
+    (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(each) + "\n" for each in records))
+    make(tmp_path, tmp_path / "out")
+    text = (tmp_path / "out" / "tables.md").read_text()
+    assert SEVERAL in text
+    assert "Where topple took longer: 2 pairs" in text
+    assert "| smash, open, default pace=0.1 |" in text
+    episodes = by_scene(read_episodes(tmp_path))
+    assert paired_table(episodes)["without [s]"].tolist() == ["30.0", "90.0"]
+    assert slower_table(episodes)["lost [s]"].tolist() == ["9.0", "3.0"]
