@@ -35,7 +35,19 @@ ORDERS = {
         *("layered", "flow", "former", "portfolio"),
     ),
     "smash.records": (
-        *("outcomes", "locking", "variants", "claims", "record", "engines", "runs", "episodes", "trials", "files"),
+        *(
+            "outcomes",
+            "locking",
+            "variants",
+            "claims",
+            "record",
+            "engines",
+            "scenes",
+            "runs",
+            "episodes",
+            "trials",
+            "files",
+        ),
         *("sharing", "reading", "writing", "believing"),
     ),
     "smash.experiments": (

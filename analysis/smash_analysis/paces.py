@@ -13,12 +13,13 @@ import pandas as pd
 from smash.problem.errors import MalformedFile
 from smash.problem.words import counted
 from smash.records.files import EPISODES
+from smash.records.scenes import require_one_scene
 from smash_analysis import command
 from smash_analysis.execution_sweeps import good_everywhere
 from smash_analysis.execution_tables import failure_table, paired_table, told_episodes
 from smash_analysis.tables.believed import records_of, say
 from smash_analysis.tables.paper_tables import PAPER
-from smash_analysis.tables.scenes import by_scene, conditions, require_one_scene
+from smash_analysis.tables.scenes import by_scene, conditions
 from smash_analysis.tables.writing import SPREADS, markdown
 
 PACE = "pace"

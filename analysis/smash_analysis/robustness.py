@@ -15,11 +15,12 @@ from matplotlib.figure import Figure
 from smash.problem.errors import MalformedFile
 from smash.problem.words import counted
 from smash.records.files import EPISODES
+from smash.records.scenes import require_one_scene
 from smash_analysis import command
 from smash_analysis.execution_tables import failure_table, told_episodes
 from smash_analysis.statistics.intervals import Paired, paired, success_rate
 from smash_analysis.tables.believed import records_of, say
-from smash_analysis.tables.scenes import SCALES, by_scene, conditions, require_one_scene
+from smash_analysis.tables.scenes import SCALES, by_scene, conditions
 from smash_analysis.tables.writing import RATES, SPREADS, markdown, rate_cell, with_spread
 
 SETTING = ["suite", "label", "variant", "policy"]

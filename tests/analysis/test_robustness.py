@@ -4,10 +4,10 @@ import json
 
 import pytest
 from smash_analysis import paces, robustness
-from smash_analysis.tables.scenes import MixedScenes
 
 from smash.problem.errors import MalformedFile
 from smash.records.engines import MixedEngines
+from smash.records.scenes import MixedScenes
 from tests.analysis.test_execution_tables import record
 
 FAST, SLOW = {"speed": (0.5, 0.25)}, {"speed": (0.1, 0.1)}

@@ -1,9 +1,10 @@
 """What the records of episodes tell of scene, noise and pace."""
 
 import pytest
-from smash_analysis.tables.scenes import Conditions, MixedScenes, require_one_scene, scene_words
+from smash_analysis.tables.scenes import Conditions, scene_words
 
 from smash.experiments.episodes.series import scene_name
+from smash.records.scenes import MixedScenes, require_one_scene
 
 
 @pytest.mark.parametrize(

@@ -1,20 +1,17 @@
-"""What an episode was carried out under: scene, noise and pace, as its record tells; what may share a table."""
+"""What an episode was carried out under: scene, noise and pace, as its record tells."""
 
 from __future__ import annotations
 
 import re
-from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import degrees
 
 import pandas as pd
 
-from smash.problem.errors import SmashError
 from smash.records.episodes import EpisodeRecord
+from smash.records.scenes import DEFAULT
 
-DEFAULT = "default"
-"""What the built-in scene is called."""
 SCALES = {
     "pose": ("mm", 1e3),
     "yaw": ("°", degrees(1.0)),
@@ -56,26 +53,6 @@ class Conditions:
     def place(self) -> str:
         """Scene and pace in words."""
         return f"{self.base} at {self.pace}" if self.pace else self.base
-
-
-class MixedScenes(SmashError):
-    """Episodes in several scenes or at several paces where those of one make sense."""
-
-
-def require_one_scene(where: str, scenes: Iterable[str]) -> None:
-    """Refuse episodes in several scenes.
-
-    Args:
-        where: they are from, for the message.
-        scenes: that of each, in words.
-
-    Raises:
-        MixedScenes: where there are several.
-    """
-    counts = Counter(scenes)
-    if len(counts) > 1:
-        told = ", ".join(f"{count} in {scene}" for scene, count in sorted(counts.items()))
-        raise MixedScenes(f"{where}: episodes in several scenes ({told}) make no table; keep each in a directory")
 
 
 def scene_words(scene: str | None) -> Conditions:
