@@ -55,7 +55,7 @@ def forecast_table(runs: Sequence[RunRecord], episodes: pd.DataFrame) -> pd.Data
     said = {run.key: run.expected_seconds for run in runs if run.expected_seconds is not None}
     part = episodes[episodes["run"].isin(list(said)) & episodes["success"]]
     table = part[["suite", "instance", "label", "variant", "policy", "seed", "replans"]].assign(
-        expected=part["run"].map(said), taken=part["execution_seconds"]
+        expected=part["run"].map(said).astype("float64"), taken=part["execution_seconds"]
     )
     return table.assign(error=table["expected"] / table["taken"] - 1).reset_index(drop=True)
 

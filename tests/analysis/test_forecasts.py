@@ -83,3 +83,4 @@ def test_forecasts_are_of_the_built_in_scene_as_it_is(tmp_path, capsys):
     (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
     assert read_default(tmp_path)["key"].tolist() == ["None"]
     assert "2 episodes in another scene, noise or pace left out" in capsys.readouterr().err
+    assert forecast_table(RUNS, read_default(tmp_path)).empty
