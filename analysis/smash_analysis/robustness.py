@@ -47,7 +47,9 @@ def read_noisy(results: Path) -> pd.DataFrame:
     """
     records = records_of(results, EPISODES)
     known = [pair for pair in zip(records, conditions(records), strict=True) if pair[1].noise is not None]
-    single = [(record, under) for record, under in known if len(under.noise or {}) < 2]
+    single = [
+        (record, under) for record, under in known if len(noise := set(under.noise or ())) < 2 and noise <= set(SCALES)
+    ]
     if not single:
         raise MalformedFile(str(EPISODES.path(results)), "no episode without noise, or with one kind of it")
     places = [under.place for _, under in single if under.noise] or [under.place for _, under in single]

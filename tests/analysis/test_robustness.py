@@ -61,6 +61,7 @@ def test_table_and_curves_are_written(tmp_path):
 
 def test_nothing_but_several_kinds_at_once_lies_on_no_curve(tmp_path):
     rows = [("a", "topple", 20.0, True, {"noise": {"size": 0.001, "mass": 0.1}})]
+    rows += [("a", "topple", 20.0, True, {"noise": {"wind": 0.1}})]
     with pytest.raises(MalformedFile, match="one kind"):
         robustness.read_noisy(written(tmp_path, rows))
 

@@ -36,7 +36,8 @@ class Conditions:
 
     Attributes:
         base: Name of the scene file; `DEFAULT` for the built-in scene.
-        noise: Amounts by kind, in the unit of `SCALES`; None where nothing tells.
+        noise: Amounts by kind, in the unit of `SCALES` (of a kind that is not there, as recorded); None where nothing
+            tells.
         speed: Shares of the arm's velocity and acceleration limits; None where nothing tells.
     """
 
@@ -94,7 +95,7 @@ def conditions(records: Sequence[EpisodeRecord]) -> list[Conditions]:
 
 
 def _amounts(noise: Mapping[str, float]) -> dict[str, float]:
-    return {kind: round(amount * SCALES[kind][1], 2) for kind, amount in noise.items()}
+    return {kind: round(amount * SCALES.get(kind, ("", 1.0))[1], 2) for kind, amount in noise.items()}
 
 
 def by_scene(episodes: pd.DataFrame) -> pd.DataFrame:
