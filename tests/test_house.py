@@ -35,8 +35,8 @@ ORDERS = {
         *("layered", "flow", "former", "portfolio"),
     ),
     "smash.records": (
-        *("outcomes", "locking", "variants", "claims", "record", "engines", "runs", "episodes", "trials", "files"),
-        *("sharing", "reading", "writing", "believing"),
+        *("outcomes", "locking", "variants", "claims", "record", "engines", "scenes", "runs", "episodes", "trials"),
+        *("files", "sharing", "reading", "writing", "believing"),
     ),
     "smash.experiments": (
         *("environment", "isolation", "weighing", "sweeps", "episodes", "best_known", "studies"),

@@ -19,13 +19,13 @@ from smash.problem.errors import SmashError
 from smash.problem.words import counted
 from smash.records.engines import require_one_engine
 from smash.records.files import TRIALS
+from smash.records.scenes import DEFAULT
 from smash_analysis.command import fail
 from smash_analysis.execution_tables import WITHOUT, paired_table, read_episodes
 from smash_analysis.statistics.intervals import success_rate, wilson
 from smash_analysis.tables.believed import records_of
 from smash_analysis.tables.writing import RATES, SPREADS, markdown, rate_cell
 
-DEFAULT = "default"
 SETTING = ["benchmark", "blocks", "label", "variant", "policy"]
 """What episodes have in common that are compared between scenes."""
 LEGEND = (

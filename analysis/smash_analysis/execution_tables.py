@@ -17,6 +17,7 @@ from smash_analysis.tables.believed import records_of
 from smash_analysis.tables.episodes import episodes_table
 from smash_analysis.tables.latex import write_latex
 from smash_analysis.tables.paper_tables import METRICS, PAPER, SIZES, Metric
+from smash_analysis.tables.scenes import SEVERAL, by_scene
 from smash_analysis.tables.writing import (
     RATES,
     SPREADS,
@@ -233,6 +234,9 @@ def make(results: Path, out: Path) -> list[Path]:
     parts = ["# Execution\n", f"{count} {LEGEND}\n"]
     files = [out / "episodes.csv", out / "tables.md"]
     write_csv(episodes, files[0])
+    if (apart := by_scene(episodes)) is not episodes:
+        episodes = apart
+        parts.append(f"{SEVERAL}\n")
     for benchmark, title in BENCHMARKS.items():
         if not (episodes["benchmark"] == benchmark).any():
             continue

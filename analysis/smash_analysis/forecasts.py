@@ -3,28 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
 from smash.problem.errors import MalformedFile
+from smash.problem.words import counted
 from smash.records.files import EPISODES
 from smash.records.runs import RunRecord
 from smash_analysis import command
 from smash_analysis.charts.panels import Chart, Panel, curves
 from smash_analysis.execution_tables import WITHOUT, read_episodes
 from smash_analysis.statistics.intervals import bootstrap, bootstrap_ratio
-from smash_analysis.tables.believed import runs_of
+from smash_analysis.tables.believed import runs_of, say
 from smash_analysis.tables.writing import SPREADS, markdown, with_spread
 
 LEGEND = (
-    "Execution is simulated time of successful episodes; each instance counts once (the mean over its seeds). An error "
-    "is an episode's expected seconds against what it took."
+    "Times are simulated, of successful episodes in the built-in scene as it is, which the forecasts are about. An "
+    "error is an episode's expected seconds against what it took; means and medians are over episodes."
+)
+SAVED = (
+    "Of one planner, on the instances and seeds that it carried out both ways; each instance counts once (the mean "
+    f"over its seeds). {SPREADS}"
 )
 SECONDS, ACTIONS = "seconds", "actions"
 TOLERATED = 1.05
 """A plan that takes more than this share of the time of the one without topple has lost by it."""
+
+
+def read_default(results: Path) -> pd.DataFrame:
+    """Return `told_episodes` of the built-in scene as it is: forecasts know no other scene, noise or pace.
+
+    Raises:
+        MalformedFile: where there are none, or they are damaged.
+        MixedEngines: where they are of several engines.
+    """
+    episodes = read_episodes(results)
+    default = episodes[episodes["scene"].isna()]
+    if len(default) < len(episodes):
+        say([f"{counted(len(episodes) - len(default), 'episode')} in another scene, noise or pace left out"])
+    return default
 
 
 def forecast_table(runs: Sequence[RunRecord], episodes: pd.DataFrame) -> pd.DataFrame:
@@ -35,7 +55,7 @@ def forecast_table(runs: Sequence[RunRecord], episodes: pd.DataFrame) -> pd.Data
     said = {run.key: run.expected_seconds for run in runs if run.expected_seconds is not None}
     part = episodes[episodes["run"].isin(list(said)) & episodes["success"]]
     table = part[["suite", "instance", "label", "variant", "policy", "seed", "replans"]].assign(
-        expected=part["run"].map(said), taken=part["execution_seconds"]
+        expected=part["run"].map(said).astype("float64"), taken=part["execution_seconds"]
     )
     return table.assign(error=table["expected"] / table["taken"] - 1).reset_index(drop=True)
 
@@ -61,24 +81,30 @@ def error_table(forecasts: pd.DataFrame) -> pd.DataFrame:
 
 
 def objective_table(runs: Sequence[RunRecord], episodes: pd.DataFrame) -> pd.DataFrame:
-    """Return what topple saves against the plan without it that has the fewest actions, by objective.
+    """Return what topple saves against the plan without it that has the fewest actions, by planner and objective.
 
-    One row per set, policy and objective; for seconds another one against the plan without topple that is fastest.
+    Of planners that plan for seconds, too. One row per set, planner (by its label), policy and objective; for seconds
+    another one against the plan without topple that is fastest. Labels are set against others only across objectives.
     """
-    objective = {run.key: run.objective for run in runs}
-    done = episodes[episodes["success"]].assign(objective=episodes["run"].map(objective))
-    planners = {run.label for run in runs if run.objective == SECONDS} | {"smash"}
-    done = done[done["label"].isin(list(planners))]
+    by_key = {run.key: run for run in runs}
+    timed = {run.planner for run in runs if run.objective == SECONDS}
+    done = episodes[episodes["success"] & episodes["run"].isin(list(by_key))]
+    done = done.assign(
+        planner=[by_key[key].planner for key in done["run"]], objective=[by_key[key].objective for key in done["run"]]
+    )
     rows = []
-    for (suite, policy), part in done.groupby(["suite", "policy"]):
+    for (suite, _, policy), part in done[done["planner"].isin(list(timed))].groupby(["suite", "planner", "policy"]):
+        sides = dict(list(part.groupby(["variant", "objective", "label"])))
         for chosen, against in ((ACTIONS, ACTIONS), (SECONDS, ACTIONS), (SECONDS, SECONDS)):
-            with_ = part[(part["variant"] == "topple") & (part["objective"] == chosen)]
-            without = part[(part["variant"] == WITHOUT) & (part["objective"] == against)]
-            pair = with_.merge(without, on=["instance", "seed"], suffixes=("", "_without"))
-            if pair.empty:
-                continue
-            each = pair.groupby("instance")[["execution_seconds", "execution_seconds_without"]].mean()
-            rows.append({"suite": suite, "policy": policy, **_saved(each, chosen, against)})
+            for label, base in product(sorted(set(part["label"])), repeat=2):
+                with_, without = sides.get(("topple", chosen, label)), sides.get((WITHOUT, against, base))
+                if with_ is None or without is None or (chosen == against and label != base):
+                    continue
+                pair = with_.merge(without, on=["instance", "seed"], suffixes=("", "_without"))
+                if len(pair):
+                    each = pair.groupby("instance")[["execution_seconds", "execution_seconds_without"]].mean()
+                    who = {"suite": suite, "planner": label, "planner without": base, "policy": policy}
+                    rows.append({**who, **_saved(each, chosen, against)})
     return pd.DataFrame(rows)
 
 
@@ -119,7 +145,7 @@ def chart(forecasts: pd.DataFrame) -> Chart:
                 )
 
         off = 100 * part["error"].abs().median()
-        return Panel(f"{suite}: {len(part)} episodes, median error {off:.1f} %", draw)
+        return Panel(f"{suite}: {counted(len(part), 'episode')}, median error {off:.1f} %", draw)
 
     suites = sorted(set(forecasts["suite"]))
     return Chart([[panel(suite) for suite in suites]], "taken [s]", "expected [s]", looks)
@@ -131,16 +157,19 @@ def make(results: Path, out: Path) -> list[Path]:
     Raises:
         MalformedFile: where there are no episodes of plans for seconds, or records are damaged.
     """
-    runs, episodes = runs_of(results), read_episodes(results)
+    runs, episodes = runs_of(results), read_default(results)
     forecasts = forecast_table(runs, episodes)
     if forecasts.empty:
-        words = 'no successful episode of a plan for seconds; a planner with `objective = "seconds"` makes such plans'
+        words = (
+            "no successful episode, in the built-in scene, of a plan for seconds; a planner with "
+            '`objective = "seconds"` makes such plans'
+        )
         raise MalformedFile(str(EPISODES.path(results)), words)
     out.mkdir(parents=True, exist_ok=True)
     files = [out / "forecasts.md", out / "forecasts.png"]
     saved = objective_table(runs, episodes)
-    parts = ["# Forecasts\n", f"{LEGEND} {SPREADS}\n", markdown(error_table(forecasts))]
-    parts += ["## What topple saves\n", markdown(saved)] if len(saved) else []
+    parts = ["# Forecasts\n", f"{LEGEND}\n", markdown(error_table(forecasts))]
+    parts += ["## What topple saves\n", f"{SAVED}\n", markdown(saved)] if len(saved) else []
     files[0].write_text("\n".join(parts), encoding="utf-8")
     chart(forecasts).figure().savefig(files[1], dpi=150)
     return files

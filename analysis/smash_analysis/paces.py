@@ -10,12 +10,16 @@ from pathlib import Path
 
 import pandas as pd
 
+from smash.problem.errors import MalformedFile
+from smash.problem.words import counted
 from smash.records.files import EPISODES
+from smash.records.scenes import require_one_scene
 from smash_analysis import command
 from smash_analysis.execution_sweeps import good_everywhere
 from smash_analysis.execution_tables import failure_table, paired_table, told_episodes
-from smash_analysis.tables.believed import records_of
+from smash_analysis.tables.believed import records_of, say
 from smash_analysis.tables.paper_tables import PAPER
+from smash_analysis.tables.scenes import by_scene, conditions
 from smash_analysis.tables.writing import SPREADS, markdown
 
 PACE = "pace"
@@ -28,18 +32,25 @@ LEGEND = (
 
 
 def read_paces(results: Path) -> pd.DataFrame:
-    """Return `told_episodes` with their pace in words; older records, which do not say it, by their scene.
+    """Return `told_episodes` without noise, with their pace in words; older records, which do not say it, by the scene.
+
+    A plan that was carried out twice at one pace, under two names of it, counts once.
 
     Raises:
-        MalformedFile: where there are no episodes, or they are damaged.
+        MalformedFile: where there are no episodes without noise, or they are damaged.
+        MixedEngines: where they are of several engines.
+        MixedScenes: where they are in several scenes.
     """
     records = records_of(results, EPISODES)
-    speeds = [None if record.episode is None else record.episode.speed for record in records]
-    words = [
-        (record.scene or "default") if speed is None else f"{speed[0]:g}, {speed[1]:g}"
-        for record, speed in zip(records, speeds, strict=True)
-    ]
-    return told_episodes(records).assign(**{PACE: words})
+    found = [pair for pair in zip(records, conditions(records), strict=True) if pair[1].noise == {}]
+    if not found:
+        raise MalformedFile(str(EPISODES.path(results)), "no episode without noise")
+    if len(found) < len(records):
+        say([f"{counted(len(records) - len(found), 'episode')} with noise, or not known to be without, left out"])
+    require_one_scene(str(results), (under.base for _, under in found))
+    episodes = told_episodes([record for record, _ in found], str(results))
+    episodes = episodes.assign(**{PACE: [under.pace or under.base for _, under in found]})
+    return episodes.drop_duplicates(["run", "policy", "seed", PACE])
 
 
 def pace_table(episodes: pd.DataFrame) -> pd.DataFrame:
@@ -92,7 +103,7 @@ def make(results: Path, out: Path) -> list[Path]:
     episodes = read_paces(results)
     out.mkdir(parents=True, exist_ok=True)
     shared = episodes[good_everywhere(episodes.assign(scene=episodes[PACE]))]
-    saved, failed = pace_table(shared), failure_table(episodes)
+    saved, failed = pace_table(shared), failure_table(by_scene(episodes))
     parts = [
         "# Equal paces\n",
         f"{len(episodes)} episodes, {len(shared)} of them of plans that succeed at every pace: these are compared. "

@@ -8,12 +8,15 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from smash.problem.errors import MalformedFile
+from smash.records.files import RUNS
 from smash.records.runs import RunRecord
 from smash_analysis import command
 from smash_analysis.execution_tables import read_episodes
 from smash_analysis.statistics.intervals import bootstrap, bootstrap_ratio
 from smash_analysis.tables.believed import runs_of
 from smash_analysis.tables.latex import write_latex
+from smash_analysis.tables.scenes import by_scene
 from smash_analysis.tables.writing import SPREADS, markdown, with_spread, write_csv
 
 BASELINE = "no-topple-no-carry-no-lift"
@@ -34,7 +37,10 @@ LEGEND = (
 
 
 def scoop_table(runs: list[RunRecord], episodes: pd.DataFrame) -> pd.DataFrame:
-    """Return a row per instance, variant and policy of `smash`, with what other planners say of the same problem."""
+    """Return a row per instance, variant and policy of `smash`, with what other planners say of the same problem.
+
+    It is empty where `smash` has made none of the plans in `NAMES`.
+    """
     rows = []
     for run in runs:
         if run.label != "smash" or run.variant not in NAMES or run.actions is None or run.cost is None:
@@ -44,6 +50,8 @@ def scoop_table(runs: list[RunRecord], episodes: pd.DataFrame) -> pd.DataFrame:
         for policy in policies or ["–"]:
             carried_out = _carried_out(here[here["policy"] == policy], run.variant)
             rows.append({**_planned(run, runs), "policy": policy, **carried_out})
+    if not rows:
+        return pd.DataFrame()
     order = {name: index for index, name in enumerate(NAMES.values())}
     table = pd.DataFrame(rows)
     return table.sort_values(["instance", "plan"], key=lambda c: c.map(order) if c.name == "plan" else c, kind="stable")
@@ -53,7 +61,7 @@ def _planned(run: RunRecord, runs: list[RunRecord]) -> dict[str, Any]:
     """Return the columns of a plan."""
     assert run.actions is not None
     assert run.cost is not None
-    problem, unit = (run.instance, run.variant), run.instance_document["costs"]["unit"]
+    problem, unit = (run.instance, run.variant), run.instance_document.get("costs", {}).get("unit", "actions")
     others = [other for other in runs if other.label != "smash" and (other.instance, other.variant) == problem]
     return {
         "instance": run.instance,
@@ -110,9 +118,11 @@ def make(results: Path, out: Path) -> list[Path]:
     """Write the table as Markdown, LaTeX and CSV; return the files.
 
     Raises:
-        MalformedFile: where there are no runs or no episodes, or they are damaged.
+        MalformedFile: where there are no plans of it or no episodes, or they are damaged.
     """
-    table = scoop_table(runs_of(results), read_episodes(results))
+    table = scoop_table(runs_of(results), by_scene(read_episodes(results)))
+    if table.empty:
+        raise MalformedFile(str(RUNS.path(results)), "no plan by `smash` of the demonstration of the scoop")
     out.mkdir(parents=True, exist_ok=True)
     files = [out / "scoop.md", out / "scoop.csv"]
     files[0].write_text(f"# The scoop\n\n{LEGEND}\n\n{markdown(table)}", encoding="utf-8")

@@ -22,7 +22,7 @@ def command(results: Path, instance: Path, scene: Path | None, out: Path | None)
     """Fit the costs of actions and travel, in milliseconds, to the episodes of RESULTS, and say how well they fit.
 
     Travel is measured between the places of the scene along the arc that the arm turns on. An action of INSTANCE that
-    no episode has carried out keeps its cost.
+    no episode has carried out keeps its cost. The episodes are of one scene, noise and pace.
 
     \b
     Examples:
@@ -36,6 +36,7 @@ def command(results: Path, instance: Path, scene: Path | None, out: Path | None)
     from smash.records.engines import require_one_engine
     from smash.records.files import EPISODES, RUNS
     from smash.records.reading import read
+    from smash.records.scenes import DEFAULT, require_one_scene
 
     problem = read_instance(instance)
     tabletop = default_scene() if scene is None else read_scene(scene)
@@ -44,6 +45,7 @@ def command(results: Path, instance: Path, scene: Path | None, out: Path | None)
     for note in (*runs.notes(), *episodes.notes()):
         click.echo(one_line(note), err=True)
     require_one_engine(str(results), "episodes", (record.engine for record in episodes.records))
+    require_one_scene(str(results), (record.scene or DEFAULT for record in episodes.records))
     filed = {run.key: run.instance_document for run in runs.records}
     measured: list[Duration] = []
     for record in episodes.records:

@@ -136,7 +136,8 @@ class EpisodeRecord(Record, kw_only=True, frozen=True):
     Attributes:
         key: Names it for good: the run's key, policy, seed, scene, and the engine where it is not PyBullet.
         run: Key of the run whose plan it carries out; what was planned stands beside it.
-        scene: Name of the scene file; None for the built-in scene.
+        scene: Name of the scene file (`default` is the built-in scene), then the noise and the pace that took the
+            place of its own, as in "default pose=3mm pace=0.1"; None for the built-in scene as it is.
         engine: What simulated it; a record that does not say so is from when there was PyBullet alone.
         depth: Of a single target in its start pile, the top being 1; None for other goals.
         episode: None where its process ended without one; `problem` says why.

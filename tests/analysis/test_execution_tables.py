@@ -12,6 +12,7 @@ from smash_analysis.execution_tables import (
 )
 from smash_analysis.report.appendix import commands
 from smash_analysis.report.sources import find_sources
+from smash_analysis.tables.scenes import SEVERAL, by_scene
 
 from smash.problem.errors import MalformedFile
 from smash.records.engines import MixedEngines
@@ -197,3 +198,20 @@ def test_the_report_shows_each_engine_apart(tmp_path):
         f"smash episodes again/{tmp_path.name} --seeds 2 --policy open --engine mujoco",
         f"python -m smash_analysis.engines again/{tmp_path.name}    # both engines, paired",
     ]
+
+
+def test_scenes_are_not_put_together(tmp_path):
+    records = [
+        record("a", variant, seconds * slower) | {"scene": scene, "key": f"{variant}/{scene}"}
+        for scene, slower in ((None, 1.0), ("default pace=0.1", 3.0))
+        for variant, seconds in (("topple", 33.0), ("no-topple", 30.0))
+    ]
+    (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(each) + "\n" for each in records))
+    make(tmp_path, tmp_path / "out")
+    text = (tmp_path / "out" / "tables.md").read_text()
+    assert SEVERAL in text
+    assert "Where topple took longer: 2 pairs" in text
+    assert "| smash, open, default pace=0.1 |" in text
+    episodes = by_scene(read_episodes(tmp_path))
+    assert paired_table(episodes)["without [s]"].tolist() == ["30.0", "90.0"]
+    assert slower_table(episodes)["lost [s]"].tolist() == ["9.0", "3.0"]

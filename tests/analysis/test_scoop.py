@@ -2,6 +2,7 @@
 
 import pandas as pd
 from smash_analysis.scoop import BASELINE, scoop_table
+from smash_analysis.tables.scenes import by_scene
 
 from tests.analysis.made_up import record
 
@@ -68,3 +69,21 @@ def test_a_plan_that_was_not_carried_out_has_a_row():
     runs = [run(BASELINE, [["pick", "a", "s"]], 10000)]
     (row,) = scoop_table(runs, pd.DataFrame([episode("topple", 0, 1.0)])).to_dict("records")
     assert (row["policy"], row["execution [s]"], row["success"]) == ("–", "–", "0/0")
+
+
+def test_scenes_have_rows_of_their_own_and_an_instance_may_be_without_costs():
+    scenes = ((None, 1.0), ("default pace=0.1", 3.0))
+    episodes = pd.DataFrame(
+        [
+            episode(variant, 0, seconds * slower) | {"scene": scene}
+            for variant, seconds in ((BASELINE, 20.0), ("topple", 10.0))
+            for scene, slower in scenes
+        ]
+    )
+    runs = [run(BASELINE, [["pick", "a", "s"]] * 4, 4), run("topple", [["topple", "s", 1]], 1)]
+    bare = record(label="smash", variant="topple", instance="bare", actions=[["pick", "a", "s"]], cost=1)
+    table = scoop_table([*runs, bare], by_scene(episodes))
+    rows = table[table["plan"] == "+ topple, scoop, lift"].set_index("policy")["execution [s]"]
+    assert rows[["replan, default", "replan, default pace=0.1"]].str[:4].tolist() == ["10.0", "30.0"]
+    assert table.loc[table["instance"] == "bare", "cost"].item().startswith("1 actions")
+    assert scoop_table([], episodes).empty

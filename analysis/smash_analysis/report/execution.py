@@ -20,12 +20,13 @@ from smash_analysis.execution_tables import (
 from smash_analysis.report.blocks import Block, Cell, Grid, GridBlock, TableBlock
 from smash_analysis.report.grids import Shades, variant_words
 from smash_analysis.statistics.intervals import success_rate
+from smash_analysis.tables.scenes import by_scene
 from smash_analysis.tables.writing import SPREADS, rate_cell
 
 
 def execution_blocks(records: list[EpisodeRecord]) -> list[Block]:
     """Return success as grids, the paper's tables with ours, execution time saved, and the failures."""
-    episodes = _by_scene(told_episodes(records))
+    episodes = by_scene(told_episodes(records))
     blocks: list[Block] = [_success(episodes)]
     for benchmark, title in BENCHMARKS.items():
         if (episodes["benchmark"] == benchmark).any():
@@ -50,12 +51,6 @@ def execution_blocks(records: list[EpisodeRecord]) -> list[Block]:
     return blocks
 
 
-def _by_scene(episodes: pd.DataFrame) -> pd.DataFrame:
-    """Return the episodes with their scene beside the policy where there are several: no figure is over two scenes."""
-    scenes = episodes["scene"].fillna("default")
-    return episodes.assign(policy=episodes["policy"] + ", " + scenes) if scenes.nunique() > 1 else episodes
-
-
 def _failed(episodes: pd.DataFrame, row: dict[Hashable, object]) -> list[int]:
     """Return the places of the failed episodes that a row of `failure_table` counts."""
     columns = ["suite", "label", "variant", "policy", "failure"]
@@ -69,7 +64,7 @@ def _failed(episodes: pd.DataFrame, row: dict[Hashable, object]) -> list[int]:
 
 def execution_headlines(records: list[EpisodeRecord]) -> list[str]:
     """Return success rates by policy and variant, and the time that topple saves, a sentence each."""
-    episodes = _by_scene(told_episodes(records))
+    episodes = by_scene(told_episodes(records))
     lines = []
     for (benchmark, policy), part in episodes.groupby(["benchmark", "policy"]):
         who = f"{str(benchmark).capitalize()}-goal episodes, policy “{policy}”"
