@@ -20,7 +20,7 @@ from smash.forecast.model import OutcomeModel, default_model
 from smash.forecast.robust import least_risk
 from smash.forecast.search import Candidate, faster, neighbours
 from smash.planners.protocol import ACTIONS, OnIncumbent
-from smash.problem.extras import MissingExtra, is_there
+from smash.problem.extras import EXECUTION, MissingExtra, is_there
 from smash.problem.model import TABLE, Action, Pick
 from smash.problem.plan import Incumbent, Plan
 from smash.problem.problem import Problem
@@ -29,8 +29,6 @@ from smash.problem.rules import Verdict
 if TYPE_CHECKING:
     from smash.execution.rehearsal import Rehearsal
 
-MOTIONS = ("pybullet_data", "pinocchio", "coal", "toppra", "ompl")
-"""What a rehearsal plans motions with."""
 FIRST, SECOND, ANNEALED = 0.3, 0.5, 0.6
 """When the planner's plan, its plan without topple and the annealing have to be there, as shares of the budget."""
 SEEDS = (0, 1)
@@ -124,7 +122,7 @@ def _timed(solve: Solve, job: Job) -> tuple[Report, float]:
 
 def _rehearsal(job: Job, model: OutcomeModel) -> Rehearsal | None:
     """Make the scene's rehearsal ready; None where motions cannot be planned here, or the model is of another scene."""
-    if not all(is_there(module) for module in MOTIONS) or job.instance.hand is not None:
+    if not all(is_there(module) for module in EXECUTION) or job.instance.hand is not None:
         return None
     from smash.execution.actions.arm_motions import ArmMotions
     from smash.execution.rehearsal import Rehearsal
@@ -182,7 +180,7 @@ class _Weighing:
         return replace(report, plan=replace(plan, actions=found.actions, details=details))
 
     def _why_not_rehearsed(self) -> str:
-        missing = next((module for module in MOTIONS if not is_there(module)), None)
+        missing = next((module for module in EXECUTION if not is_there(module)), None)
         if missing is not None:
             return str(MissingExtra("a rehearsal of its motions", missing))
         if self.rehearsal is None:
