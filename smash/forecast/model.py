@@ -51,9 +51,9 @@ class Toppled(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         height: lowest level that fell, 1 is the bottom.
         falling: how many fell.
         seed: of the trial.
-        stands: whether the rest of the pile stood as it should.
-        seconds: what the topple took, from the arm's ready pose until all lay still.
-        landed: one per block, from the cut upward.
+        stands: whether the rest of the pile stood as it should; not where no push was found.
+        seconds: what the topple took, from the arm's ready pose until all lay still; 0 where no push was found.
+        landed: one per block, from the cut upward; none where no push was found.
     """
 
     height: Whole
@@ -126,7 +126,7 @@ class OutcomeModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_o
         ):
             if wanted > room:
                 raise Unsupported(
-                    f"objective seconds: instance {instance.name!r} has {wanted} {what}; "
+                    f"expected times and risk: instance {instance.name!r} has {wanted} {what}; "
                     f"the outcome model of scene {self.scene!r} knows {room}"
                 )
         return {

@@ -43,7 +43,8 @@ def asked_for() -> Iterator[tuple[str, str]]:
     """Yield every module that the tree asks for by its name, and where."""
     for folder in ("smash", "analysis", "baselines"):
         for path in sorted((ROOT / folder).rglob("*.py")):
-            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            text = path.read_text(encoding="utf-8")
+            for node in ast.walk(ast.parse(text)) if "problem.extras" in text else ():
                 called = getattr(node.func, "id", "") if isinstance(node, ast.Call) else ""
                 if called in ("require", "MissingExtra", "is_there", "install_line"):
                     given = node.args[1:] if called in ("require", "MissingExtra") else node.args

@@ -9,7 +9,9 @@ from smash.execution.rehearsal import Rehearsal
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.trials.calibration import calibrations, table
 from smash.execution.trials.outcome_model import outcome_model
+from smash.forecast.expected import Forecaster
 from smash.forecast.model import default_model
+from smash.problem.actions.topple import Topple
 from smash.problem.errors import SmashError
 from smash.problem.problem import Problem
 from smash.records.trials import Landing, Trial
@@ -47,6 +49,32 @@ def test_a_model_is_made_of_trials_that_have_times():
     assert made.moves.count > 5
     with pytest.raises(SmashError, match="make the map again"):
         outcome_model(default_scene(), [trial(1, 1, seconds=None)])
+
+
+def without_push(height, falling, seed=0):
+    return Trial(scene="s", stack=0, height=height, falling=falling, seed=seed, problem="no push")
+
+
+def test_a_topple_without_a_push_counts_as_risk():
+    made = outcome_model(default_scene(), [trial(1, 2), without_push(1, 2, seed=1)], rounds=1)
+    assert [(t.stands, len(t.landed)) for t in made.topples] == [(True, 2), (False, 0)]
+    instance = door.make_instance(start={"s1": ["a", "b"]}, goal={"s1": ["b", "a"]})
+    assert Forecaster(Problem(instance), made).fall("s1", 1, 2).risk == 0.5
+    (row,) = calibrations(made, [trial(1, 2, seed=8), without_push(1, 2, seed=9)])
+    assert (row.trials, row.blocks, row.stands, row.stands_expected, row.seconds_off) == (2, 2, 0.5, 0.5, 0.0)
+    (row,) = calibrations(made, [without_push(1, 2, seed=9)])
+    assert (row.trials, row.blocks, row.stands) == (1, 0, 0.0)
+    assert "nan" in table([row])
+    with pytest.raises(SmashError, match="make the map again"):
+        outcome_model(default_scene(), [without_push(1, 2)])
+
+
+def test_a_topple_whose_push_is_not_found_has_no_time(monkeypatch):
+    instance = door.make_instance(start={"s1": ["a", "b"]}, goal={"s1": ["b", "a"]})
+    rehearsal, actions = Rehearsal(default_scene(), default_model()), [Topple("s1", 1)]
+    assert rehearsal.of(Problem(instance), actions)[0].seconds > 0
+    monkeypatch.setattr("smash.execution.rehearsal._Run._planned", lambda self, task, state: None)
+    assert rehearsal.of(Problem(instance), actions)[0].seconds is None
 
 
 def test_the_shipped_model_is_of_the_default_scene():
