@@ -4,13 +4,17 @@ import pytest
 
 pytest.importorskip("pybullet")
 
+import msgspec
+from click.testing import CliRunner
+
 import smash as door
+from smash.cli import smash
 from smash.execution.rehearsal import Rehearsal
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.trials.calibration import calibrations, table
 from smash.execution.trials.outcome_model import outcome_model
 from smash.forecast.expected import Forecaster
-from smash.forecast.model import default_model
+from smash.forecast.model import default_model, write_model
 from smash.problem.actions.topple import Topple
 from smash.problem.errors import SmashError
 from smash.problem.problem import Problem
@@ -67,6 +71,32 @@ def test_a_topple_without_a_push_counts_as_risk():
     assert "nan" in table([row])
     with pytest.raises(SmashError, match="make the map again"):
         outcome_model(default_scene(), [without_push(1, 2)])
+    with pytest.raises(SmashError, match="one engine"):
+        outcome_model(default_scene(), [trial(1, 2), msgspec.structs.replace(trial(1, 1), engine="mujoco")])
+
+
+def against(tmp_path, *arguments, **changes):
+    """Hold a model against trials that are never done; return exit code and words."""
+    write_model(msgspec.structs.replace(default_model(), **changes), tmp_path / "model.json")
+    files = ["--against", str(tmp_path / "model.json"), "--out", str(tmp_path / "o")]
+    ended = CliRunner().invoke(smash, ["topple-map", "--engine", "pybullet", *files, *arguments])
+    assert not (tmp_path / "o").exists()
+    return ended.exception.exit_code, str(ended.exception)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"layout": "elsewhere"}, "another one"),
+        ({"engine": "mujoco"}, "--engine mujoco"),
+        ({"topples": ()}, "nothing to hold"),
+        ({}, "--first-seed 4"),
+    ],
+)
+def test_a_model_that_the_trials_say_nothing_about_is_refused_before_any(tmp_path, changes, said):
+    code, words = against(tmp_path, *([] if not changes else ["--first-seed", "9"]), **changes)
+    assert (code, "\n" in words) == (2, False)
+    assert said in words
 
 
 def test_a_topple_whose_push_is_not_found_has_no_time(monkeypatch):

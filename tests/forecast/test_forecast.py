@@ -8,9 +8,9 @@ from click.testing import CliRunner
 
 import smash as door
 from smash.cli import smash
-from smash.forecast.durations import FEATURES, Point, TimedMove, features, fit, in_order, seconds
+from smash.forecast.durations import Point, TimedMove, features, fit, in_order, seconds
 from smash.forecast.expected import Forecaster
-from smash.forecast.model import default_model, model_from_document, read_model, write_model
+from smash.forecast.model import FEATURES, default_model, model_from_document, read_model, write_model
 from smash.forecast.robust import least_risk
 from smash.forecast.search import faster
 from smash.problem.actions.topple import Topple
@@ -48,6 +48,16 @@ def test_a_malformed_model_is_refused_in_one_line(tmp_path, change):
     with pytest.raises(MalformedFile) as refusal:
         model_from_document(json.loads((tmp_path / "model.json").read_text()) | change)
     assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(("name", "said"), [("colour", "no such feature"), ("pick", "is missing")])
+def test_weights_that_are_unknown_or_missing_are_refused(tmp_path, name, said):
+    write_model(default_model(), tmp_path / "model.json")
+    document = json.loads((tmp_path / "model.json").read_text())
+    weights = document["moves"]["weights"]
+    weights.pop(name) if name in weights else weights.update({name: 1.0})
+    with pytest.raises(MalformedFile, match=rf"moves\.weights.*{name}.*{said}"):
+        model_from_document(document)
 
 
 def test_the_model_holds_topples_of_up_to_nine_blocks():

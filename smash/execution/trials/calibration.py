@@ -14,6 +14,7 @@ import numpy as np
 
 from smash.forecast.model import OutcomeModel, Toppled
 from smash.motion.poses import Vector
+from smash.problem.errors import SmashError
 from smash.records.trials import Trial
 
 
@@ -50,6 +51,30 @@ class Calibration:
     stands: float
     stands_expected: float
     seconds_off: float
+
+
+def require_comparable(model: OutcomeModel, layout: str, engine: str, seeds: range) -> None:
+    """Refuse a model that trials to come say nothing about, before any is done.
+
+    Args:
+        model: Of a scene.
+        layout: The fingerprint of the trials' scene.
+        engine: What simulates them.
+        seeds: Of the trials.
+
+    Raises:
+        SmashError: where the model is of another scene or engine, has no topples, or was made from these seeds.
+    """
+    common = {trial.seed for trial in model.topples}.intersection(seeds)
+    if not any(trial.landed for trial in model.topples):
+        raise SmashError("no block has landed in its topples: there is nothing to hold against trials")
+    if model.layout != layout:
+        raise SmashError(f"it is of scene {model.scene!r} ({model.layout}), the trials are of another one ({layout})")
+    if model.engine != engine:
+        raise SmashError(f"it is of the engine {model.engine}, the trials are of {engine}: --engine {model.engine}")
+    if common:
+        after = max(trial.seed for trial in model.topples) + 1
+        raise SmashError(f"it was made from trials with seed {min(common)}, too: --first-seed {after} takes others")
 
 
 def calibrations(model: OutcomeModel, trials: Iterable[Trial]) -> list[Calibration]:

@@ -47,14 +47,19 @@ def outcome_model(tabletop: Tabletop, trials: Iterable[Trial], *, rounds: int = 
         seed: Of these.
 
     Raises:
-        SmashError: where no trial can be used.
+        SmashError: where no trial can be used, or they are of several engines.
     """
+    trials = list(trials)
+    engines = {trial.engine for trial in trials}
+    if len(engines) > 1:
+        raise SmashError(f"an outcome model is of one engine; the trials are of {' and '.join(sorted(engines))}")
     topples = tuple(_toppled(trial) for trial in trials if trial.seconds is not None or not trial.landings)
     if not any(topple.landed for topple in topples):
         raise SmashError("an outcome model takes trials with landings and times: none has both; make the map again")
     bare = OutcomeModel(
         scene=tabletop.name,
         layout=tabletop.fingerprint,
+        engine=engines.pop(),
         side=tabletop.side,
         highest=tabletop.highest,
         ready=_ready()[0],
