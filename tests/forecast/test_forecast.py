@@ -160,6 +160,18 @@ def test_a_plan_for_seconds_says_what_it_expects(tmp_path):
     assert CliRunner().invoke(smash, ["validate", FIGURE, str(out)]).exit_code == 0
 
 
+def test_a_model_that_nothing_asks_for_is_a_usage_error(tmp_path):
+    ended = CliRunner().invoke(smash, ["plan", FIGURE, "--model", str(tmp_path / "model.json")])
+    assert (ended.exit_code, "--objective seconds and --robust" in ended.output) == (2, True)
+
+
+@pytest.mark.usefixtures("forecast_alone")
+def test_plans_for_seconds_are_robust_in_any_case():
+    plain, robust = (door.plan(FIGURE, objective="seconds", robust=robust, budget=0.3) for robust in (False, True))
+    assert robust.expected_seconds > 0
+    assert robust.details["risk"] == plain.details["risk"]
+
+
 @pytest.mark.parametrize(
     "change", [{"expected_seconds": -1}, {"expected_seconds": "long"}, {"actions": None, "cost": None}]
 )
