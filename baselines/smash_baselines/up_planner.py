@@ -29,7 +29,7 @@ class UpEngine(CommandEngine):
 
     def missing(self) -> str | None:
         """Return what is not installed, or None."""
-        return None if is_there("unified_planning") else install_line("unified-planning")
+        return None if is_there("unified_planning") else install_line("unified_planning")
 
 
 def planner_of_up_engine(engine: str, encoding: str = COMPOSED) -> UpEngine:

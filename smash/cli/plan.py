@@ -66,7 +66,11 @@ from smash.problem.problem import Problem
     show_default=True,
     help="What the plan is chosen for: the fewest actions, or the least expected time of its execution.",
 )
-@click.option("--robust", is_flag=True, help="Of equally good plans the one of least risk in execution.")
+@click.option(
+    "--robust",
+    is_flag=True,
+    help="Of equally good plans the one of least risk in execution; plans for seconds are chosen so in any case.",
+)
 @click.option(
     "--model",
     "outcomes",
@@ -116,6 +120,8 @@ def command(
     if planner is not None and command_line is not None:
         raise click.UsageError("--planner and --command exclude each other")
     check_command(command_line, encoding)
+    if outcomes is not None and objective == ACTIONS and not robust:
+        raise click.UsageError("--model is for --objective seconds and --robust")
     planner = planner or (DEFAULT if command_line is None else COMMAND)
     if estimates is not None:
         max_topple = _trusted(estimates, max_topple)

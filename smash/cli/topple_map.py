@@ -10,7 +10,7 @@ import click
 
 from smash.cli.choices import engine_option, say_engine
 from smash.cli.signals import stopped_by_signals
-from smash.problem.errors import Interrupted
+from smash.problem.errors import Interrupted, SmashError
 from smash.problem.extras import EXECUTION, require
 from smash.problem.words import one_line
 
@@ -69,7 +69,7 @@ def command(
     """
     from smash.execution.physics.engines import engine_of
     from smash.execution.scene.scene_file import default_scene, read_scene
-    from smash.execution.trials.calibration import calibrations, table
+    from smash.execution.trials.calibration import calibrations, require_comparable, table
     from smash.execution.trials.estimates import ENOUGH, TRUSTED, write_estimates
     from smash.execution.trials.outcome_model import outcome_model
     from smash.execution.trials.topple_map import draw, estimates
@@ -83,9 +83,16 @@ def command(
     tabletop = default_scene() if scene is None else read_scene(scene)
     named, engine = engine, engine_of(tabletop, engine)
     say_engine(engine, tabletop, named)
-    judged = None if against is None else read_model(against)
+    chosen_seeds = range(first_seed, first_seed + seeds)
+    judged = None
+    if against is not None:
+        judged = read_model(against)
+        try:
+            require_comparable(judged, tabletop.fingerprint, engine, chosen_seeds)
+        except SmashError as error:
+            raise SmashError(f"--against {against}: {error}") from None
     trials: dict[Hashable, Trial] = {}
-    wanted = wanted_trials(tabletop, engine, highest_cut, most, range(first_seed, first_seed + seeds))
+    wanted = wanted_trials(tabletop, engine, highest_cut, most, chosen_seeds)
 
     def ended(trial: Trial) -> None:
         trials[trial.key] = trial

@@ -124,7 +124,9 @@ class _Run:
             landed = drawn.landed[min(level, len(drawn.landed) - 1)]
             x, y = slot.point(landed.along, landed.aside, way)
             self._where.blocks[block] = standing(x, y, self._rehearsal.tabletop.side / 2, slot.angle)
-        if planned is None or pushes_needed(action.height, len(state.piles[action.location])) > 1:
+        if planned is None:
+            return None
+        if pushes_needed(action.height, len(state.piles[action.location])) > 1:
             return drawn.seconds
         return duration(planned.segments or ()) + SETTLING
 

@@ -55,7 +55,7 @@ def plan(
             does; else here, where a planner that is stuck is not stopped.
         objective: `actions` for the fewest, `seconds` for the least expected time of the execution in the default
             scene: the plan then has `expected_seconds`.
-        robust: of equally good plans the one of least risk in execution.
+        robust: of equally good plans the one of least risk in execution; plans for seconds are chosen so in any case.
 
     Returns:
         The plan: `status` is `optimal`, `feasible`, `infeasible` (proven) or `unknown` (budget spent without a plan).

@@ -14,14 +14,14 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from smash.experiments.isolation.caller import run_isolated
-from smash.experiments.isolation.job import Job, Report
+from smash.experiments.isolation.job import Job, Report, still_running
 from smash.forecast.expected import Forecaster
 from smash.forecast.model import OutcomeModel, default_model
 from smash.forecast.robust import least_risk
 from smash.forecast.search import Candidate, faster, neighbours
 from smash.planners.protocol import ACTIONS, OnIncumbent
 from smash.problem.extras import EXECUTION, MissingExtra, is_there
-from smash.problem.model import TABLE, Action, Pick
+from smash.problem.model import Action
 from smash.problem.plan import Incumbent, Plan
 from smash.problem.problem import Problem
 from smash.problem.rules import Verdict
@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from smash.execution.rehearsal import Rehearsal
 
 FIRST, SECOND, ANNEALED = 0.3, 0.5, 0.6
-"""When the planner's plan, its plan without topple and the annealing have to be there, as shares of the budget."""
+"""When the planner's plan, its plan without topple and the annealing have to be there, as shares of the budget; where
+neither plan is there by then, the planner has all the rest."""
 SEEDS = (0, 1)
 """Each of the fastest plans is rehearsed with these."""
 FINALISTS = 3
@@ -95,29 +96,79 @@ def weighed(job: Job, solve: Solve, model: OutcomeModel | None, stopped: Callabl
         Unsupported: where the outcome model does not know the instance.
     """
     forecaster = Forecaster(job.problem, model or default_model())
-    counted = replace(job, settings=job.settings.counting)
+    asked = _Asked(job, solve)
     if job.settings.objective == ACTIONS:
-        report, spent = _timed(solve, replace(counted, budget=ANNEALED * job.budget))
-        return _Weighing(job, forecaster, None, monotonic() - spent, stopped).robust(report)
-    rehearsal = _rehearsal(job, forecaster.model)
-    first, spent = _timed(solve, replace(counted, budget=FIRST * job.budget))
-    reports = [first]
-    if reports[0].outcome not in ANSWERS:
-        return reports[0]
+        report = asked.once(job.problem, job.budget)
+        return _Weighing(job, forecaster, None, asked, monotonic() - asked.spent, stopped).robust(report)
+    first = asked.once(job.problem, FIRST * job.budget)
+    if first.outcome not in ANSWERS:
+        return first
     bare = Problem(job.instance, replace(job.options, topple=False))
     if job.options.topple and bare.infeasible is None:
-        left = max(SECOND * job.budget - spent, 0.05 * job.budget)
-        second, more = _timed(solve, replace(counted, problem=bare, budget=left))
-        reports.append(second)
-        spent += more
-    return _Weighing(job, forecaster, rehearsal, monotonic() - spent, stopped).fastest(reports)
+        asked.once(bare, max(SECOND * job.budget - asked.spent, 0.05 * job.budget))
+    left = job.budget - asked.spent
+    if not asked.plans and left > 0.0 and not stopped():
+        asked.once(job.problem, left)
+    if not asked.plans:
+        return asked.report()
+    rehearsal = None if stopped() else _rehearsal(job, forecaster.model)
+    return _Weighing(job, forecaster, rehearsal, asked, monotonic() - asked.spent, stopped).fastest()
 
 
-def _timed(solve: Solve, job: Job) -> tuple[Report, float]:
-    """Return a report, and how much of the budget it has cost [s]: import and start of processes are not counted."""
-    begun = monotonic()
-    report = solve(job)
-    return report, monotonic() - begun if report.wall_seconds is None else report.wall_seconds
+class _Asked:
+    """The runs of a planner for one job: what they have answered, and what they have cost of its budget.
+
+    Attributes:
+        spent: so far [s]; import and start of processes are not counted.
+        incumbents: of all runs, as of one.
+    """
+
+    def __init__(self, job: Job, solve: Solve) -> None:
+        self._job = job
+        self._solve = solve
+        self._reports: list[Report] = []
+        self._main: list[Report] = []
+        self.spent = 0.0
+        self.incumbents: tuple[Incumbent, ...] = ()
+
+    def once(self, problem: Problem, budget: float) -> Report:
+        """Run the planner, and return its report."""
+        begun = monotonic()
+        report = self._solve(replace(self._job, problem=problem, settings=self._job.settings.counting, budget=budget))
+        for entry in report.plan.incumbents:
+            if not self.incumbents or entry.cost < self.incumbents[-1].cost:
+                self.incumbents += (entry._replace(seconds=self.spent + entry.seconds),)
+        self.spent += monotonic() - begun if report.wall_seconds is None else report.wall_seconds
+        self._reports.append(report)
+        if problem is self._job.problem:
+            self._main.append(report)
+        return report
+
+    @property
+    def plans(self) -> list[tuple[Action, ...]]:
+        """The plans that were found, in order."""
+        return [report.plan.actions for report in self._reports if report.plan.actions is not None]
+
+    def report(self) -> Report:
+        """Return how the last run for the job's own problem has ended, with the sums over all of them."""
+        last = self._reports[-1] if self._reports[-1].outcome == "interrupted" else self._main[-1]
+        bounds = [report.plan for report in self._main if report.plan.lower_bound is not None]
+        proven = max(bounds, key=lambda plan: plan.lower_bound or 0, default=last.plan)
+        processor = [report.cpu_seconds for report in self._reports if report.cpu_seconds is not None]
+        return replace(
+            last,
+            plan=replace(
+                last.plan,
+                options=self._main[-1].plan.options,
+                lower_bound=proven.lower_bound,
+                bound_origin=proven.bound_origin,
+                incumbents=self.incumbents,
+            ),
+            reason=still_running(self.spent, self._job.budget) if last.outcome == "over-budget" else last.reason,
+            wall_seconds=self.spent,
+            cpu_seconds=sum(processor) if processor else None,
+            memory_mib=max((r.memory_mib for r in self._reports if r.memory_mib is not None), default=None),
+        )
 
 
 def _rehearsal(job: Job, model: OutcomeModel) -> Rehearsal | None:
@@ -136,20 +187,18 @@ def _rehearsal(job: Job, model: OutcomeModel) -> Rehearsal | None:
 
 @dataclass(frozen=True)
 class _Weighing:
-    """What is weighed of one job."""
+    """What is weighed of one job: the plans that a planner was asked for; `begun` counts what that has cost."""
 
     job: Job
     forecaster: Forecaster
     rehearsal: Rehearsal | None
+    asked: _Asked
     begun: float
     stopped: Callable[[], bool]
 
-    def fastest(self, reports: Sequence[Report]) -> Report:
+    def fastest(self) -> Report:
         """Return the report of the plan that takes the least time."""
-        first = reports[0]
-        starts = [report.plan.actions for report in reports if report.plan.actions is not None]
-        if not starts:
-            return first
+        starts = self.asked.plans
         candidates = faster(
             self.forecaster,
             starts,
@@ -162,7 +211,7 @@ class _Weighing:
         details: dict[str, object] = {"weighed": how}
         if how == MODEL_ALONE:
             details["note"] = f"expected_seconds is {how}: {self._why_not_rehearsed()}"
-        return self._report(reports, chosen, details)
+        return self._report(chosen, details)
 
     def robust(self, report: Report) -> Report:
         """Return the report with the plan of least risk among those of its cost."""
@@ -170,14 +219,28 @@ class _Weighing:
         if plan.actions is None or report.outcome == "interrupted":
             return report
         risk = self.forecaster.of(plan.actions).risk
-        if plan.status != "optimal" or not self.job.problem.plain or self.job.instance.hand is not None:
-            note = "ties are not broken by risk: that takes a proven optimum, actions of cost 1 and an empty hand"
+        lacking = self._no_ties(plan)
+        if lacking is not None:
+            note = f"ties are not broken by risk: that takes {lacking}"
             return replace(report, plan=replace(plan, details={**plan.details, "risk": risk, "note": note}))
         found = least_risk(self.forecaster, plan.actions, self.begun + self.job.budget, self.stopped)
-        details = {**plan.details, "risk": found.risk, "risk_before": risk}
+        details = {**plan.details, **self._weighed_seconds(), "risk": found.risk, "risk_before": risk}
         if not found.exact:
             details["note"] = "not all optimal plans could be looked at: there may be one of less risk"
-        return replace(report, plan=replace(plan, actions=found.actions, details=details))
+        plan = replace(plan, actions=found.actions, details=details)
+        return replace(report, plan=plan, wall_seconds=monotonic() - self.begun)
+
+    def _no_ties(self, plan: Plan) -> str | None:
+        """Return what is missing for ties to be broken by risk, or None."""
+        if plan.status != "optimal":
+            return "a proven optimum"
+        if not self.job.problem.plain:
+            return "actions of cost 1"
+        return None if self.job.instance.hand is None else "an empty hand at the start"
+
+    def _weighed_seconds(self) -> dict[str, float]:
+        """Return what weighing has taken, in the words of `details`."""
+        return {"weighed_seconds": round(monotonic() - self.begun - self.asked.spent, 3)}
 
     def _why_not_rehearsed(self) -> str:
         missing = next((module for module in EXECUTION if not is_there(module)), None)
@@ -247,39 +310,36 @@ class _Weighing:
         trouble = self.forecaster.model.trouble
         rehearsed = self.rehearsal.of(self.job.problem, candidate.actions, seed)
         foreseen = list(self.forecaster.steps(candidate.actions))
-        missed = [done.action for done in rehearsed if done.seconds is None]
-        stuck = sum(isinstance(action, Pick) and action.source == TABLE for action in missed)
-        known = sum(
-            expected.seconds if done.seconds is None else done.seconds + expected.risk * trouble
+        return sum(
+            expected.seconds + (1.0 - expected.risk) * trouble  # a missed action is trouble for sure
+            if done.seconds is None
+            else done.seconds + expected.risk * trouble
             for done, expected in zip(rehearsed, foreseen, strict=True)
         )
-        return known + stuck * trouble
 
-    def _report(self, reports: Sequence[Report], chosen: Candidate, details: dict[str, object]) -> Report:
-        """Return the first report with another plan: cost, bound and status speak of actions."""
-        first = reports[0]
+    def _report(self, chosen: Candidate, details: dict[str, object]) -> Report:
+        """Return the planner's report with another plan: cost, bound and status speak of actions."""
+        asked = self.asked.report()
         verdict = self.forecaster.law.check(chosen.actions)
         cost = verdict.cost
         assert cost is not None, verdict
-        bound = first.plan.lower_bound
+        bound = asked.plan.lower_bound
         proven = bound is not None and bound >= cost
         taken = monotonic() - self.begun
-        earlier = tuple(entry for entry in first.plan.incumbents if entry.cost > cost)
-        plan = Plan(
-            instance=first.plan.instance,
-            planner=first.plan.planner,
-            options=first.plan.options,
+        incumbents = asked.plan.incumbents
+        if not incumbents or cost < incumbents[-1].cost:
+            incumbents += (Incumbent(taken, cost, ORIGIN),)
+        plan = replace(
+            asked.plan,
             status="optimal" if proven else "feasible",
             actions=chosen.actions,
-            lower_bound=bound,
-            bound_origin=first.plan.bound_origin,
-            incumbents=(*earlier, Incumbent(taken, cost, ORIGIN)),
+            incumbents=incumbents,
             stated_cost=cost,
-            details={**first.plan.details, **details, "risk": chosen.expected.risk},
+            details={**asked.plan.details, **details, **self._weighed_seconds(), "risk": chosen.expected.risk},
             expected_seconds=chosen.expected.seconds,
         )
         return replace(
-            first,
+            asked,
             outcome="interrupted" if self.stopped() else "optimal" if proven else "feasible",
             reason="stopped from outside" if self.stopped() else "",
             plan=plan,

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from smash.forecast.model import MoveTimes
+from smash.forecast.model import FEATURES, MoveTimes
 
 
 class Point(NamedTuple):
@@ -38,15 +38,6 @@ class TimedMove:
     lying: bool
     first: bool
     seconds: float
-
-
-_BASES = ("from_radius", "from_bearing", "from_height", "radius", "bearing", "height", "swing")
-FEATURES = (
-    *("pick", "place", "lying", "first"),
-    *(f"{kind} {name}" for kind in ("pick", "place") for name in _BASES),
-    *(f"{one} x {other}" for one, other in combinations_with_replacement(_BASES, 2)),
-)
-"""Names of what a move's time is a weighted sum of: whence, whither, the swing, for each kind, and their products."""
 
 
 def features(kind: str, origin: Point, target: Point, lying: bool, first: bool) -> tuple[float, ...]:

@@ -58,7 +58,7 @@ class Fall:
 
     Attributes:
         seconds: from the ready pose.
-        risk: how probably the rest of the pile does not stand as it should.
+        risk: how probably the rest of the pile does not stand as it should, or no push is found.
         landed: from the cut upward.
     """
 
@@ -107,7 +107,7 @@ class Forecaster:
             what = " and ".join(unknown) or "carriers"
             leave_out = "".join(f" --without {name}" for name in unknown)
             raise Unsupported(
-                f"objective seconds: the outcome model has no times for {what}"
+                f"expected times and risk: the outcome model has no times for {what}"
                 + (f"; plan{leave_out}" if unknown and not problem.instance.carriers else "")
             )
         self.problem = problem
@@ -120,10 +120,8 @@ class Forecaster:
 
     def begin(self) -> Walk:
         """Return a walk at the start."""
-        ready = self.model.ready
-        hand = Point(ready.radius, ready.bearing, self.model.ready_height)
         somewhere = {block: Lying(self._region()) for block in self.problem.instance.table}
-        return Walk(State.start_of(self.problem.instance), hand, True, somewhere)
+        return Walk(State.start_of(self.problem.instance), self.begin_point(), True, somewhere)
 
     def of(self, actions: Sequence[Action]) -> Expected:
         """Forecast a legal plan."""
@@ -201,7 +199,8 @@ class Forecaster:
         return known
 
     def _fall(self, location: str, height: int, falling: int) -> Fall:
-        trials = [trial for trial in self.model.trials(height, falling) if trial.landed]
+        tried = self.model.trials(height, falling)
+        trials = [trial for trial in tried if trial.landed]
         spot = self.spots[location]
         if not trials or not spot.headings:
             return Fall(0.0, 1.0, (Lying(self._region()),) * falling)
@@ -223,7 +222,7 @@ class Forecaster:
             )
         return Fall(
             sum(trial.seconds for trial in trials) / len(trials),
-            sum(not trial.stands for trial in trials) / len(trials),
+            sum(not trial.stands for trial in tried) / len(tried),
             tuple(landed),
         )
 

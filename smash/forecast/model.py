@@ -10,18 +10,27 @@ import os
 from collections.abc import Mapping
 from functools import cache
 from importlib.resources import as_file, files
+from itertools import combinations_with_replacement
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal, cast
 
 import msgspec
 
-from smash.problem.errors import Unsupported
+from smash.problem.errors import MalformedFile, Unsupported
 from smash.problem.files.documents import check_format, convert, parse_json, read_bytes, write_text
 from smash.problem.model import Instance
 
 MODEL_FORMAT: Final = "smash-outcome-model/1"
 DEFAULT_MODEL = "default-model.json"
 """The model of the default scene, beside this module."""
+
+_BASES = ("from_radius", "from_bearing", "from_height", "radius", "bearing", "height", "swing")
+FEATURES = (
+    *("pick", "place", "lying", "first"),
+    *(f"{kind} {name}" for kind in ("pick", "place") for name in _BASES),
+    *(f"{one} x {other}" for one, other in combinations_with_replacement(_BASES, 2)),
+)
+"""Names of what a move's time is a weighted sum of: whence, whither, the swing, for each kind, and their products."""
 
 Length = Annotated[float, msgspec.Meta(ge=-100.0, le=100.0)]
 Amount = Annotated[float, msgspec.Meta(ge=0.0, le=1e6)]
@@ -51,9 +60,9 @@ class Toppled(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         height: lowest level that fell, 1 is the bottom.
         falling: how many fell.
         seed: of the trial.
-        stands: whether the rest of the pile stood as it should.
-        seconds: what the topple took, from the arm's ready pose until all lay still.
-        landed: one per block, from the cut upward.
+        stands: whether the rest of the pile stood as it should; not where no push was found.
+        seconds: what the topple took, from the arm's ready pose until all lay still; 0 where no push was found.
+        landed: one per block, from the cut upward; none where no push was found.
     """
 
     height: Whole
@@ -68,7 +77,7 @@ class MoveTimes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How long picks and places take: a linear model (`smash.forecast.durations`).
 
     Attributes:
-        weights: seconds per unit of each feature.
+        weights: seconds per unit of each of `FEATURES`.
         spread: standard deviation of what the model leaves unexplained [s].
         explained: share of the variance that it explains.
         count: actions that it was fitted to.
@@ -86,6 +95,7 @@ class OutcomeModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_o
     Attributes:
         scene: its name.
         layout: its fingerprint.
+        engine: what simulated the topples; a model that does not say so is from when there was PyBullet alone.
         side: side of a block.
         highest: the most blocks of a pile that the arm can work on.
         ready: where the hand is before the first action.
@@ -102,6 +112,7 @@ class OutcomeModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_o
     format: Literal["smash-outcome-model/1"] = "smash-outcome-model/1"
     scene: str
     layout: str
+    engine: str = "pybullet"
     side: Annotated[float, msgspec.Meta(gt=0.0, le=1.0)]
     highest: Whole
     ready: Spot
@@ -126,7 +137,7 @@ class OutcomeModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_o
         ):
             if wanted > room:
                 raise Unsupported(
-                    f"objective seconds: instance {instance.name!r} has {wanted} {what}; "
+                    f"expected times and risk: instance {instance.name!r} has {wanted} {what}; "
                     f"the outcome model of scene {self.scene!r} knows {room}"
                 )
         return {
@@ -179,7 +190,14 @@ def model_from_document(document: Any, where: str = "model") -> OutcomeModel:
         MalformedFile: with one line that says where and what is allowed.
     """
     check_format(document, where, MODEL_FORMAT)
-    return cast(OutcomeModel, convert(document, OutcomeModel, where))
+    model = cast(OutcomeModel, convert(document, OutcomeModel, where))
+    for names, problem in (
+        (model.moves.weights.keys() - set(FEATURES), "there is no such feature"),
+        (set(FEATURES) - model.moves.weights.keys(), "its weight is missing"),
+    ):
+        if names:
+            raise MalformedFile(where, f"`moves.weights`: {min(names)!r}: {problem}")
+    return model
 
 
 @cache

@@ -226,7 +226,10 @@ def _shortcoming(record: RunRecord, problem: Problem) -> str:
     if record.outcome in ("optimal", "feasible", "infeasible") and record.outcome != record.status:
         return f"its outcome is {record.outcome}, its status {record.status}"
     costs = [cost for _, cost, _ in record.incumbents]
-    if costs != sorted(set(costs), reverse=True) or costs[-1:] != ([] if record.cost is None else [record.cost]):
+    least = costs[-1:]
+    if record.objective == "seconds" and least and record.cost is not None:
+        least = [max(record.cost, *least)]
+    if costs != sorted(set(costs), reverse=True) or least != ([] if record.cost is None else [record.cost]):
         return f"its incumbents cost {costs}, its plan {'is missing' if record.cost is None else record.cost}"
     if plan.actions is None:
         return ""

@@ -86,8 +86,16 @@ class RunRecord(Record, kw_only=True, frozen=True):
 
     @property
     def trace(self) -> list[tuple[float, int]]:
-        """(seconds, cost) of the incumbents that count: none where the law refused what the planner answered."""
-        return [] if self.outcome == "refused" else [(seconds, cost) for seconds, cost, _ in self.incumbents]
+        """(seconds, cost) of the incumbents that count: none where the law refused what the planner answered.
+
+        Of a plan for seconds, which may have more actions than the planner's best, no incumbent counts for less than
+        that plan.
+        """
+        least = self.cost if self.objective == "seconds" and self.cost is not None else 0
+        found: dict[int, float] = {}
+        for seconds, cost, _ in self.incumbents if self.outcome != "refused" else ():
+            found.setdefault(max(cost, least), seconds)
+        return [(seconds, cost) for cost, seconds in found.items()]
 
     @property
     def plan(self) -> Plan:

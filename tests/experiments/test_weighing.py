@@ -1,18 +1,23 @@
 """Plans are weighed: what planners are asked, and what is said of the plan that is chosen."""
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import msgspec
 import pytest
 
 import smash as door
-from smash.experiments.isolation.job import Job, Report
+from smash.experiments.isolation.job import Job, Report, still_running
 from smash.experiments.sweeps.sweep import weighed_or_not
-from smash.experiments.weighing import weighed
+from smash.experiments.weighing import _Weighing, weighed
+from smash.forecast.expected import Forecaster
 from smash.forecast.model import default_model
+from smash.forecast.search import Candidate
 from smash.planners.protocol import Settings, ask
-from smash.planners.registry import get_planner
+from smash.planners.registry import UnknownPlanner, get_planner
 from smash.problem.errors import Unsupported
 from smash.problem.model import PlanOptions
-from smash.problem.plan import check_plan
+from smash.problem.plan import Incumbent, Plan, check_plan
 from smash.problem.problem import Problem
 
 ELSEWHERE = msgspec.structs.replace(default_model(), layout="another")
@@ -57,7 +62,8 @@ def test_cost_bound_and_status_speak_of_actions(instance):
     optimum = ask(get_planner("smash"), Problem(instance), Settings(), 2.0, name="smash")
     assert plan.cost == len(plan.actions) >= plan.lower_bound == optimum.cost
     assert plan.status == ("optimal" if plan.cost == optimum.cost else "feasible")
-    assert plan.incumbents[-1].cost == plan.cost
+    assert plan.incumbents[-1].cost == min(plan.cost, optimum.cost)
+    assert plan.details["weighed_seconds"] > 0.0
     costs = [entry.cost for entry in plan.incumbents]
     assert costs == sorted(set(costs), reverse=True)
 
@@ -101,6 +107,69 @@ def test_robust_keeps_cost_and_proof(instance):
     assert check_plan(instance, report.plan).accepted
 
 
-def test_robust_says_where_there_is_no_proof(instance):
-    plan = weighed(job(instance, "actions", robust=True, planner="greedy"), Asked(), ELSEWHERE).plan
-    assert "proven optimum" in plan.details["note"]
+def test_robust_says_where_there_is_no_proof_and_leaves_the_planner_all_its_budget(instance):
+    asked = Asked()
+    plan = weighed(job(instance, "actions", robust=True, planner="greedy"), asked, ELSEWHERE).plan
+    assert plan.details["note"] == "ties are not broken by risk: that takes a proven optimum"
+    assert [part.budget for part in asked.jobs] == [2.0]
+
+
+class Slow:
+    """A planner that has a plan from its n-th run on."""
+
+    def __init__(self, needs, outcome="budget-spent"):
+        self.needs, self.outcome, self.jobs = needs, outcome, []
+
+    def __call__(self, part):
+        self.jobs.append(part)
+        if len(self.jobs) >= self.needs:
+            plan = ask(get_planner("greedy"), part.problem, part.settings, part.budget, name="greedy")
+            plan = replace(plan, incumbents=(Incumbent(0.2, plan.cost, "greedy"),))
+            return Report("feasible", plan, wall_seconds=0.5, cpu_seconds=0.25, memory_mib=10.0)
+        empty = Plan(part.instance.name, part.planner, part.options, "unknown", None, 3 - len(self.jobs), "x")
+        reason = still_running(part.budget, part.budget) if self.outcome == "over-budget" else ""
+        return Report(self.outcome, empty, reason, wall_seconds=part.budget, cpu_seconds=0.25, memory_mib=20.0)
+
+
+def test_where_nothing_is_found_the_planner_goes_on_to_the_real_budget(instance):
+    slow = Slow(needs=9, outcome="over-budget")
+    report = weighed(job(instance), slow, ELSEWHERE)
+    assert [part.options.topple for part in slow.jobs] == [True, False, True]
+    assert (report.wall_seconds, report.cpu_seconds, report.memory_mib) == (pytest.approx(2.0), 0.75, 20.0)
+    assert report.reason == "still running after 2.0 s on a budget of 2 s: stopped"
+    assert (report.plan.status, report.plan.lower_bound) == ("unknown", 2)
+
+
+def test_a_plan_that_is_found_late_is_weighed_and_the_trace_says_when_it_was_found(instance):
+    slow = Slow(needs=3)
+    report = weighed(job(instance, budget=4.0), slow, ELSEWHERE)
+    assert check_plan(instance, report.plan).accepted
+    assert report.plan.incumbents[0].seconds == pytest.approx(2.0 + 0.2)
+    assert (report.plan.options.topple, report.cpu_seconds) == (True, 0.75)
+
+
+def test_nothing_more_is_asked_of_a_run_that_is_stopped(instance):
+    slow = Slow(needs=9)
+    assert weighed(job(instance), slow, ELSEWHERE, lambda: len(slow.jobs) > 1).outcome == "budget-spent"
+    assert len(slow.jobs) == 2
+
+
+def test_no_motion_is_warmed_up_for_a_planner_that_there_is_not(instance, monkeypatch):
+    monkeypatch.setattr("smash.experiments.weighing._rehearsal", lambda job, model: pytest.fail("warmed up"))
+    with pytest.raises(UnknownPlanner):
+        weighed(job(instance, planner="nobody"), Asked(), None)
+
+
+def test_every_action_without_a_motion_is_trouble(instance):
+    forecaster = Forecaster(Problem(instance), default_model())
+    actions = ask(get_planner("greedy"), Problem(instance), Settings(), 2.0, name="greedy").actions
+    candidate = Candidate(actions, forecaster.of(actions))
+
+    class Missed:
+        def of(self, problem, actions, seed):
+            return [SimpleNamespace(action=action, seconds=None) for action in actions]
+
+    weighing = _Weighing(job(instance), forecaster, Missed(), None, 0.0, lambda: False)
+    known = sum(step.seconds + (1 - step.risk) * default_model().trouble for step in forecaster.steps(actions))
+    assert weighing._seconds(candidate, 0) == pytest.approx(known)
+    assert known > len(actions) * default_model().trouble

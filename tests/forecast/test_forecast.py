@@ -8,9 +8,9 @@ from click.testing import CliRunner
 
 import smash as door
 from smash.cli import smash
-from smash.forecast.durations import FEATURES, Point, TimedMove, features, fit, in_order, seconds
+from smash.forecast.durations import Point, TimedMove, features, fit, in_order, seconds
 from smash.forecast.expected import Forecaster
-from smash.forecast.model import default_model, model_from_document, read_model, write_model
+from smash.forecast.model import FEATURES, default_model, model_from_document, read_model, write_model
 from smash.forecast.robust import least_risk
 from smash.forecast.search import faster
 from smash.problem.actions.topple import Topple
@@ -48,6 +48,16 @@ def test_a_malformed_model_is_refused_in_one_line(tmp_path, change):
     with pytest.raises(MalformedFile) as refusal:
         model_from_document(json.loads((tmp_path / "model.json").read_text()) | change)
     assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(("name", "said"), [("colour", "no such feature"), ("pick", "is missing")])
+def test_weights_that_are_unknown_or_missing_are_refused(tmp_path, name, said):
+    write_model(default_model(), tmp_path / "model.json")
+    document = json.loads((tmp_path / "model.json").read_text())
+    weights = document["moves"]["weights"]
+    weights.pop(name) if name in weights else weights.update({name: 1.0})
+    with pytest.raises(MalformedFile, match=rf"moves\.weights.*{name}.*{said}"):
+        model_from_document(document)
 
 
 def test_the_model_holds_topples_of_up_to_nine_blocks():
@@ -148,6 +158,18 @@ def test_a_plan_for_seconds_says_what_it_expects(tmp_path):
     assert document["expected_seconds"] > 0
     assert document["status"] == ("optimal" if document["cost"] == document["lower_bound"] else "feasible")
     assert CliRunner().invoke(smash, ["validate", FIGURE, str(out)]).exit_code == 0
+
+
+def test_a_model_that_nothing_asks_for_is_a_usage_error(tmp_path):
+    ended = CliRunner().invoke(smash, ["plan", FIGURE, "--model", str(tmp_path / "model.json")])
+    assert (ended.exit_code, "--objective seconds and --robust" in ended.output) == (2, True)
+
+
+@pytest.mark.usefixtures("forecast_alone")
+def test_plans_for_seconds_are_robust_in_any_case():
+    plain, robust = (door.plan(FIGURE, objective="seconds", robust=robust, budget=0.3) for robust in (False, True))
+    assert robust.expected_seconds > 0
+    assert robust.details["risk"] == plain.details["risk"]
 
 
 @pytest.mark.parametrize(

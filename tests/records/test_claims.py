@@ -136,6 +136,19 @@ def test_a_record_that_cannot_be_true_counts_as_refused(fields, why):
     assert run.trace == []
 
 
+def test_a_plan_for_seconds_may_have_more_actions_than_the_planner_had_found():
+    of_ten = record(0, [(0.1, 12), (1.0, 10)])
+    fields = {name: getattr(of_ten, name) for name in of_ten.__struct_fields__}
+    incumbents = [(0.1, 12, "milp"), (1.0, 8, "milp")]
+    weighed, counted = (
+        type(of_ten)(**fields | {"incumbents": incumbents, "objective": objective})
+        for objective in ("seconds", "actions")
+    )
+    assert [run.outcome for run in believed([weighed]).records] == [of_ten.outcome]
+    assert weighed.trace == [(0.1, 12), (1.0, 10)]
+    assert [run.outcome for run in believed([counted]).records] == ["refused"]
+
+
 def test_committed_instances_pose_what_they_are():
     for instance in read_suite("multi-4")[:3]:
         assert Posed.of(instance, PlanOptions()) == Posed.of(

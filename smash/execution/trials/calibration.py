@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from math import hypot
+from math import hypot, nan
 
 import numpy as np
 
 from smash.forecast.model import OutcomeModel, Toppled
+from smash.motion.poses import Vector
+from smash.problem.errors import SmashError
 from smash.records.trials import Trial
 
 
@@ -30,9 +32,11 @@ class Calibration:
         graspable: share of blocks that could be grasped at once.
         graspable_expected: what the model says.
         brier: mean squared error of that probability, for each block.
-        stands: share of trials in which the rest stood as it should.
+        stands: share of trials in which a push was found and the rest stood as it should.
         stands_expected: what the model says.
         seconds_off: median relative error of a topple's time.
+
+    What no block has landed for is not a number.
     """
 
     size: int | None
@@ -49,42 +53,77 @@ class Calibration:
     seconds_off: float
 
 
+def require_comparable(model: OutcomeModel, layout: str, engine: str, seeds: range) -> None:
+    """Refuse a model that trials to come say nothing about, before any is done.
+
+    Args:
+        model: Of a scene.
+        layout: The fingerprint of the trials' scene.
+        engine: What simulates them.
+        seeds: Of the trials.
+
+    Raises:
+        SmashError: where the model is of another scene or engine, has no topples, or was made from these seeds.
+    """
+    common = {trial.seed for trial in model.topples}.intersection(seeds)
+    if not any(trial.landed for trial in model.topples):
+        raise SmashError("no block has landed in its topples: there is nothing to hold against trials")
+    if model.layout != layout:
+        raise SmashError(f"it is of scene {model.scene!r} ({model.layout}), the trials are of another one ({layout})")
+    if model.engine != engine:
+        raise SmashError(f"it is of the engine {model.engine}, the trials are of {engine}: --engine {model.engine}")
+    if common:
+        after = max(trial.seed for trial in model.topples) + 1
+        raise SmashError(f"it was made from trials with seed {min(common)}, too: --first-seed {after} takes others")
+
+
 def calibrations(model: OutcomeModel, trials: Iterable[Trial]) -> list[Calibration]:
-    """Hold a model against new trials, by size and as a whole; those without landings or time are left out.
+    """Hold a model against new trials, by size and as a whole; those with landings and without a time are left out.
 
     Args:
         model: Of the scene.
         trials: Others than it was made from.
     """
-    new = [trial for trial in trials if trial.landings and trial.seconds is not None]
+    new = [trial for trial in trials if trial.seconds is not None or not trial.landings]
     sizes = sorted({trial.falling for trial in new})
     parts = [(size, [trial for trial in new if trial.falling == size]) for size in sizes]
     return [_calibration(model, part, size) for size, part in [*parts, *([(None, new)] if len(parts) > 1 else [])]]
 
 
 def _calibration(model: OutcomeModel, trials: Sequence[Trial], size: int | None) -> Calibration:
-    blocks, whole = [], []
+    blocks, whole, times = [], [], []
     for trial in trials:
-        known = [seen for seen in model.trials(trial.height, trial.falling) if seen.landed]
-        if known:
+        tried = model.trials(trial.height, trial.falling)
+        known = [earlier for earlier in tried if earlier.landed]
+        if tried:
+            whole.append((trial.stands, sum(earlier.stands for earlier in tried) / len(tried)))
+        if known and trial.landings:
             blocks += [_block(known, trial, level) for level in range(len(trial.landings))]
-            whole.append(_whole(known, trial))
+            times.append(_off(known, trial))
     away, within, range_, good, good_expected = np.array(blocks, dtype=float).reshape(-1, 5).T
-    stands, stands_expected, off = np.array(whole, dtype=float).reshape(-1, 3).T
+    stands, stands_expected = np.array(whole, dtype=float).reshape(-1, 2).T
     return Calibration(
         size,
         len(trials),
         len(blocks),
-        float(np.median(away)),
-        float(within.mean()),
-        float(range_.mean()),
-        float(good.mean()),
-        float(good_expected.mean()),
-        float(((good - good_expected) ** 2).mean()),
-        float(stands.mean()),
-        float(stands_expected.mean()),
-        float(np.median(off)),
+        _middle(away),
+        _mean(within),
+        _mean(range_),
+        _mean(good),
+        _mean(good_expected),
+        _mean((good - good_expected) ** 2),
+        _mean(stands),
+        _mean(stands_expected),
+        _middle(times),
     )
+
+
+def _mean(values: Vector) -> float:
+    return float(values.mean()) if values.size else nan
+
+
+def _middle(values: Vector | Sequence[float]) -> float:
+    return float(np.median(values)) if len(values) else nan
 
 
 def _block(known: Sequence[Toppled], trial: Trial, level: int) -> tuple[float, ...]:
@@ -102,11 +141,10 @@ def _block(known: Sequence[Toppled], trial: Trial, level: int) -> tuple[float, .
     )
 
 
-def _whole(known: Sequence[Toppled], trial: Trial) -> tuple[float, ...]:
-    """Whether the rest stood, how probably that, and how far off the time was."""
+def _off(known: Sequence[Toppled], trial: Trial) -> float:
+    """How far off the time was, as a share of it."""
     assert trial.seconds is not None
-    seconds = sum(earlier.seconds for earlier in known) / len(known)
-    return trial.stands, sum(earlier.stands for earlier in known) / len(known), abs(seconds / trial.seconds - 1.0)
+    return abs(sum(earlier.seconds for earlier in known) / len(known) / trial.seconds - 1.0)
 
 
 def table(rows: Iterable[Calibration]) -> str:

@@ -41,19 +41,25 @@ def outcome_model(tabletop: Tabletop, trials: Iterable[Trial], *, rounds: int = 
 
     Args:
         tabletop: The scene.
-        trials: Topples in it; those without a time are left out.
+        trials: Topples in it; those whose blocks landed at an unknown time are left out. That no push was found is an
+            outcome, too.
         rounds: Random arrangements that are rehearsed.
         seed: Of these.
 
     Raises:
-        SmashError: where no trial can be used.
+        SmashError: where no trial can be used, or they are of several engines.
     """
-    topples = tuple(_toppled(trial) for trial in trials if trial.seconds is not None and trial.landings)
-    if not topples:
+    trials = list(trials)
+    engines = {trial.engine for trial in trials}
+    if len(engines) > 1:
+        raise SmashError(f"an outcome model is of one engine; the trials are of {' and '.join(sorted(engines))}")
+    topples = tuple(_toppled(trial) for trial in trials if trial.seconds is not None or not trial.landings)
+    if not any(topple.landed for topple in topples):
         raise SmashError("an outcome model takes trials with landings and times: none has both; make the map again")
     bare = OutcomeModel(
         scene=tabletop.name,
         layout=tabletop.fingerprint,
+        engine=engines.pop(),
         side=tabletop.side,
         highest=tabletop.highest,
         ready=_ready()[0],
@@ -153,5 +159,4 @@ def _toppled(trial: Trial) -> Toppled:
     landed = tuple(
         Landed(round(entry.along, DIGITS), round(entry.aside, DIGITS), entry.graspable) for entry in trial.landings
     )
-    assert trial.seconds is not None
-    return Toppled(trial.height, trial.falling, trial.seed, trial.stands, round(trial.seconds, 2), landed)
+    return Toppled(trial.height, trial.falling, trial.seed, trial.stands, round(trial.seconds or 0.0, 2), landed)

@@ -26,7 +26,7 @@ from typing import Any, BinaryIO, NoReturn
 
 import psutil
 
-from smash.experiments.isolation.job import STARTUP_LIMIT, Job, grace
+from smash.experiments.isolation.job import STARTUP_LIMIT, Job, grace, still_running
 from smash.experiments.isolation.leftovers import Left, end_tree, scratch_prefix
 from smash.experiments.isolation.lifetime import adopt_orphans, end_with_parent
 from smash.experiments.isolation.lines import Lines
@@ -245,7 +245,7 @@ class _Watch:
         if self.started is None:
             return "crashed", f"not ready to plan after {STARTUP_LIMIT:.0f} s"
         allowed = self.job.budget + grace(self.job.budget)
-        return "over-budget", f"still running after {allowed:.1f} s on a budget of {self.job.budget:g} s: stopped"
+        return "over-budget", still_running(allowed, self.job.budget)
 
     def _at_its_end(self) -> tuple[str, str]:
         """Return how a run ended that has answered or whose process is gone: what it left is looked at once more."""

@@ -28,6 +28,11 @@ def grace(budget: float) -> float:
     return max(0.05 * budget, 0.5)
 
 
+def still_running(after: float, budget: float) -> str:
+    """Say that a planner was stopped beyond its budget [s]."""
+    return f"still running after {after:.1f} s on a budget of {budget:g} s: stopped"
+
+
 def longest(budget: float) -> float:
     """Return how long a run can take at most, start and end included, before something has gone wrong [s]."""
     return STARTUP_LIMIT + budget + grace(budget) + _PATIENCE
