@@ -38,6 +38,8 @@ _STARTING = 60.0
 _FORKING = 10.0
 """Seconds that one has that has done so before."""
 _ATTEMPTS = 3
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+"""What a server loads starts no threads: a copy of a process is whole only where that has one."""
 _POLLING = 0.002
 """Seconds between two looks whether a server has ended."""
 
@@ -228,10 +230,12 @@ def shared_server(loaded_by: str) -> ForkServer:
     return _SERVERS.setdefault(loaded_by, ForkServer(loaded_by))
 
 
-@atexit.register
 def _close_all() -> None:
     for server in _SERVERS.values():
         server.close()
+
+
+atexit.register(_close_all)
 
 
 def _fresh(connection: socket.socket, loaded_by: str) -> int:
@@ -245,6 +249,7 @@ def _fresh(connection: socket.socket, loaded_by: str) -> int:
         stderr=subprocess.DEVNULL,
         pass_fds=[connection.fileno()],
         start_new_session=True,
+        env={**os.environ, **ONE_THREAD},
     )
     process.returncode = 0  # collected by `ForkServer`, not by the object that goes here
     return process.pid
