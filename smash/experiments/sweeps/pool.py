@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from smash.experiments.sweeps.cluster import WORKERS_OWN_SECONDS, connected
+from smash.experiments.sweeps.cluster_executor import ClusterExecutor
 from smash.experiments.sweeps.standstill import watched
 
 
@@ -41,11 +42,13 @@ def pool(jobs: int, dask: str | None, most: float, tell: Callable[[str], object]
         SmashError: where no scheduler answers.
     """
     if dask is None:
-        with ThreadPoolExecutor(jobs) as executor:
-            yield Pool(executor, jobs, here=True)
+        with ThreadPoolExecutor(jobs) as threads:
+            yield Pool(threads, jobs, here=True)
         return
-    with connected(dask) as client, watched(client, most + WORKERS_OWN_SECONDS, tell):
+    with connected(dask) as client:
         width = sum(client.nthreads().values())
         if not width:
             tell("no worker is there yet; the runs wait for the first")
-        yield Pool(client.get_executor(pure=False), width, here=False)
+        executor = ClusterExecutor(client, tell)
+        with watched(client, most + WORKERS_OWN_SECONDS, tell, executor.give_up):
+            yield Pool(executor, width, here=False)
