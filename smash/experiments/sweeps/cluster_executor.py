@@ -52,6 +52,7 @@ class ClusterExecutor(Executor):
 
     def __init__(self, client: Any, tell: Callable[[str], object]) -> None:
         self._client = client
+        self._anywhere = client.get_executor(pure=False)
         self._tell = tell
         self._told: set[str] = set()
         self._waiting: set[Future[Any]] = set()
@@ -63,7 +64,8 @@ class ClusterExecutor(Executor):
         with self._lock:
             self._waiting.add(promise)
         promise.add_done_callback(self._waiting.discard)
-        self._hand_out(promise, partial(on_worker, partial(task, **named), *arguments), frozenset())
+        do = partial(on_worker, partial(task, **named), *arguments)
+        self._hand_out(promise, self._anywhere, do, frozenset())
         return promise
 
     def give_up(self, reason: str) -> None:
@@ -74,8 +76,10 @@ class ClusterExecutor(Executor):
             with suppress(InvalidStateError):
                 promise.set_exception(ConnectionError(reason))
 
-    def _hand_out(self, promise: Future[Any], do: Callable[[], Any], unable: frozenset[str], **chosen: Any) -> None:
-        handed = self._client.get_executor(pure=False, **chosen).submit(do)
+    def _hand_out(
+        self, promise: Future[Any], executor: Executor, do: Callable[[], Any], unable: frozenset[str]
+    ) -> None:
+        handed = executor.submit(do)
         promise.add_done_callback(lambda promise: handed.cancel() if promise.cancelled() else None)
         handed.add_done_callback(lambda handed: self._ended(promise, do, unable, handed))
 
@@ -86,7 +90,7 @@ class ClusterExecutor(Executor):
                 others = [worker for worker in self._client.nthreads() if worker not in unable]
                 if not others:
                     raise RuntimeError(f"no worker can do them: {reason}")
-                self._hand_out(promise, do, unable, workers=others)
+                self._hand_out(promise, self._client.get_executor(pure=False, workers=others), do, unable)
             except Exception as error:
                 promise.set_exception(error)
 
