@@ -178,7 +178,7 @@ scaling: needs-analysis ## time over 4 to 1,000 blocks, per planner: curves and 
 	$(BIN)/python -m smash_analysis.scaling runs/scaling
 
 best-known: needs-pddl ## best known costs and bounds of the open instances, and what is still open (20 minutes)
-	$(BIN)/python -m smash sweep experiments/open.toml --out runs/open
+	$(BIN)/python -m smash sweep experiments/open.toml --out runs/open $(if $(DASK),--dask $(DASK))
 	$(BIN)/python -m smash best-known update runs/open
 	$(BIN)/python -m smash best-known table --into docs/open-instances.md
 

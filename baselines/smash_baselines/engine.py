@@ -12,6 +12,7 @@ from time import monotonic
 from typing import Any, ClassVar, Self
 
 from smash.planners.protocol import OnIncumbent, ProblemPlanner, Settings, SolveLog
+from smash.planners.protocol.tested import most_sum
 from smash.problem.errors import IllegalAction, PlannerCrashed, PlannerOutOfMemory, Unsupported
 from smash.problem.feasibility import why_contradictory
 from smash.problem.model import Instance
@@ -20,7 +21,7 @@ from smash.problem.problem import Problem
 from smash_baselines.encodings import COMPOSED, UnknownEncoding, encoding_names, get_encoding, unsupported_reason
 from smash_baselines.engines.outcomes import Outcome
 from smash_baselines.engines.process import MEMORY_LIMIT
-from smash_baselines.engines.tested import beyond_tests, most_sum
+from smash_baselines.engines.tested import beyond_tests
 from smash_baselines.facts import named_blocks, trim_buffers
 from smash_baselines.goal_words import told
 from smash_baselines.names import Step
@@ -35,7 +36,6 @@ class Run:
 
     Attributes:
         infeasible: whether the engine says that there is no plan.
-        doubt: why what it proves is only its claim (`details` keep it); None where it is believed.
     """
 
     task: PddlTask
@@ -45,7 +45,6 @@ class Run:
     deadline: float
     memory: int
     infeasible: bool = False
-    doubt: str | None = None
 
     @property
     def details(self) -> dict[str, Any]:
@@ -61,14 +60,7 @@ class Run:
 
     def raise_bound(self, bound: int) -> None:
         """Take a lower bound that the engine proved; where it is not believed it is noted as a claim."""
-        if self.doubt is None:
-            self.log.prove(bound, self.origin)
-        else:
-            self.claim({"lower_bound": max(bound, self.details.get("claimed", {}).get("lower_bound", bound))})
-
-    def claim(self, said: dict[str, Any]) -> None:
-        """Note what the engine says and nobody has to believe, with the reason."""
-        self.details["claimed"] = {**self.details.get("claimed", {}), **said, "not_believed": self.doubt}
+        self.log.conclude(bound, self.origin)
 
 
 MOST_SUM = 2**31 - 1
@@ -168,8 +160,8 @@ class EnginePlanner(ProblemPlanner):
             trim_buffers(instance), problem.options, self.encoding_of(problem), named_blocks(instance)
         )
         with tempfile.TemporaryDirectory(prefix="smash-", ignore_cleanup_errors=True) as folder:
-            doubt = beyond_tests(self.name, problem.instance)
-            run = Run(task, log, self.name, Path(folder), deadline, self.memory, doubt=doubt)
+            log.doubt = beyond_tests(self.name, problem.instance)
+            run = Run(task, log, self.name, Path(folder), deadline, self.memory)
             run.details["encoding"] = task.encoding.name
             run.details["compile_seconds"] = round(log.elapsed, 4)
             outcome = self.run(run)
@@ -189,10 +181,8 @@ class EnginePlanner(ProblemPlanner):
             raise PlannerCrashed(f"{self.name}: {outcome.text}{_last_words(run)}")
         if run.log.best is None and outcome.kind == "unsupported":
             raise Unsupported(f"{self.name}: {outcome.text}")
-        if run.infeasible and run.doubt is None:
-            run.log.refute(self.name)
-        elif run.infeasible:
-            run.claim({"status": "infeasible"})
+        if run.infeasible:
+            run.log.conclude_none(self.name)
         return run.log.plan()
 
 

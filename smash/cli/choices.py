@@ -50,6 +50,9 @@ encoding_option = click.option(
 )
 
 
+dask_option = click.option(
+    "--dask", metavar="ADDRESS", help="Run on the Dask scheduler at tcp://host:8786, or of a scheduler file."
+)
 engine_option = click.option(
     "--engine",
     type=click.Choice(list(ENGINES)),

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from smash.cli.choices import budget_option, encoding_option, named_commands
+from smash.cli.choices import budget_option, dask_option, encoding_option, named_commands
 from smash.cli.shown_tables import show
 from smash.cli.sweep import installed_runs, run_all
 from smash.experiments.comparison import comparison_of
@@ -44,7 +44,7 @@ INTERVAL = re.compile(r" \[[^]]*\]")
 @click.option("--memory", type=click.IntRange(min=1), default=DEFAULT_MEMORY, show_default=True, metavar="MIB")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True)
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="Runs at a time.")
-@click.option("--dask", metavar="ADDRESS", help="Run on the Dask scheduler at this address.")
+@dask_option
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Default: runs/compare-SUITE….")
 def command(
     suites: tuple[str, ...],

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from functools import partial
 from itertools import product
 from pathlib import Path
 
 import click
 
-from smash.cli.choices import PACE, engine_option
+from smash.cli.choices import PACE, dask_option, engine_option
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.episodes.asked import MOST_SEEDS, note_asked
 from smash.experiments.episodes.question import EpisodeRun
-from smash.experiments.episodes.series import POLICIES, REPLAYS, episode_runs, run_all
+from smash.experiments.episodes.series import POLICIES, REPLAYS, episode_runs, run_episode
+from smash.experiments.episodes.simulation import LONGEST
+from smash.experiments.isolation.job import longest
 from smash.experiments.sweeps.display import span
-from smash.problem.errors import Interrupted
+from smash.experiments.sweeps.pool import pool
+from smash.experiments.sweeps.sweep import sweep
 from smash.problem.extras import EXECUTION, require
 from smash.problem.words import counted, one_line
 from smash.records.episodes import EpisodeRecord
@@ -51,6 +55,7 @@ SECONDS_AN_EPISODE = 5.0
 @engine_option
 @click.option("--replays", is_flag=True, help="Write a 3D replay of each plan's first episode to RESULTS/replays.")
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="At a time.")
+@dask_option
 @click.option("--dry-run", is_flag=True, help="Say how many episodes are left and how long they take at a guess.")
 def command(
     results: Path,
@@ -63,6 +68,7 @@ def command(
     engine: str | None,
     replays: bool,
     jobs: int,
+    dask: str | None,
     dry_run: bool,
 ) -> None:
     """Carry out every plan in RESULTS/runs.jsonl and record each episode as one line of RESULTS/episodes.jsonl.
@@ -75,8 +81,11 @@ def command(
       smash episodes runs/tables --label smash --policy replan --policy open --seeds 3
       smash episodes runs/tables --label smash --noise pose=3mm --noise pose=5mm
       smash episodes runs/tables-mujoco --engine mujoco
+      smash episodes runs/tables --dask tcp://head:8786
     """
     require("smash episodes", *EXECUTION)
+    if replays and dask is not None:
+        raise click.UsageError("--replays goes with episodes here; `smash execute --replay` makes one of any episode")
     from smash.execution.physics.engines import engine_of
     from smash.execution.scene.scene_file import default_scene, read_scene
 
@@ -107,18 +116,25 @@ def command(
             return
         for noise, pace in changes:
             note_asked(results, seeds, policies, scene, labels, noise, pace, engine)
-        done = 0
-
-        def ended(run: EpisodeRun, record: EpisodeRecord) -> None:
-            nonlocal done
-            done += 1
-            words = f"{record.instance} {record.label} {record.variant} {record.policy} {record.seed}"
-            click.echo(one_line(f"[{done}/{left}] {words}: {_end(record)}"), err=True)
-
-        run_all(runs, records, jobs, stop, ended)
-        if stop.is_set():
-            raise Interrupted("interrupted; every finished episode is recorded, start again to do the rest")
+        if left:
+            with pool(jobs, dask, longest(LONGEST), partial(click.echo, err=True)) as there:
+                task = partial(run_episode, stop=stop) if there.here else run_episode
+                sweep(runs, records, there.executor, task, _Said(left), stop)
     click.echo(f"{counted(len(runs), 'episode')} recorded in {records.path}")
+
+
+class _Said:
+    """Says of each episode how it ended."""
+
+    def __init__(self, left: int) -> None:
+        self._left = left
+        self._done = 0
+
+    def ended(self, run: EpisodeRun, record: EpisodeRecord) -> None:
+        """Say it."""
+        self._done += 1
+        words = f"{record.instance} {record.label} {record.variant} {record.policy} {record.seed}"
+        click.echo(one_line(f"[{self._done}/{self._left}] {words}: {_end(record)}"), err=True)
 
 
 def _end(record: EpisodeRecord) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from smash.cli.choices import budget_option
+from smash.cli.choices import budget_option, dask_option
 from smash.cli.sweep import installed_runs, run_all
 from smash.experiments.studies.scaling import LARGEST, SIZES, scaling_experiment, write_scaling_suites
 from smash.experiments.sweeps.experiment import INSTANCES
@@ -20,10 +20,18 @@ from smash.experiments.sweeps.keep import keep
 @click.option("--count", type=click.IntRange(min=1), default=3, show_default=True, help="Instances a size.")
 @budget_option("of each run")
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Runs at a time.")
+@dask_option
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the instances.")
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), default="runs/scaling", show_default=True)
 def command(
-    planners: tuple[str, ...], largest: int, count: int, budget: float, jobs: int, seed: int, out: Path
+    planners: tuple[str, ...],
+    largest: int,
+    count: int,
+    budget: float,
+    jobs: int,
+    dask: str | None,
+    seed: int,
+    out: Path,
 ) -> None:
     """Run planners on random instances of 4 to 1,000 blocks, with and without topple, and record every run.
 
@@ -32,10 +40,11 @@ def command(
     left.
 
     \b
-    Example:
+    Examples:
       smash scaling --planner precedence --planner greedy --largest 100
+      smash scaling --dask tcp://head:8786 --out runs/scaling
     """
     sizes = write_scaling_suites(out / INSTANCES, largest, count, seed)
     experiment = scaling_experiment(sizes, planners or tuple(LARGEST), budget)
     base = out / INSTANCES
-    run_all(installed_runs(experiment, base), out, jobs, None, partial(keep, experiment, base, out))
+    run_all(installed_runs(experiment, base), out, jobs, dask, partial(keep, experiment, base, out))

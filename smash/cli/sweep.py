@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 from threading import Event
 
 import click
 
+from smash.cli.choices import dask_option
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.environment import commit
 from smash.experiments.isolation.job import longest
-from smash.experiments.sweeps.cluster import WORKERS_OWN_SECONDS, connected
 from smash.experiments.sweeps.cluster import slurm_script as batch_script
 from smash.experiments.sweeps.display import Progress
 from smash.experiments.sweeps.experiment import Experiment, Run, experiment_runs, not_installed, read_experiment
 from smash.experiments.sweeps.keep import keep
-from smash.experiments.sweeps.standstill import watched
+from smash.experiments.sweeps.pool import pool
 from smash.experiments.sweeps.sweep import execute, local_task, sweep
 from smash.problem.files.documents import write_text
 from smash.problem.words import counted, one_line
@@ -31,7 +30,7 @@ from smash.records.writing import Writer
 @click.command("sweep")
 @click.argument("experiment", type=click.Path(path_type=Path))
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Runs at a time (default: the file's `jobs`).")
-@click.option("--dask", metavar="ADDRESS", help="Run on the Dask scheduler at tcp://host:8786, or of a scheduler file.")
+@dask_option
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Default: runs/NAME-OF-EXPERIMENT.")
 @click.option(
     "--redo",
@@ -148,20 +147,9 @@ def _say_state(records: Writer[RunRecord], runs: list[Run], kept: int) -> None:
 
 
 def _sweep(runs: list[Run], records: Writer[RunRecord], kept: int, jobs: int, dask: str | None, stop: Event) -> None:
-    if dask is None:
-        with (
-            Progress(len(runs), kept, jobs, pool_begins=True) as progress,
-            ThreadPoolExecutor(jobs) as executor,
-        ):
-            sweep(runs, records, executor, local_task(stop, progress), progress, stop)
-        return
-    with connected(dask) as client:
-        width = sum(client.nthreads().values())
-        if not width:
-            click.echo("no worker is there yet; the runs wait for the first", err=True)
-        most = max(longest(run.job.budget) for run in runs) + WORKERS_OWN_SECONDS
-        with (
-            Progress(len(runs), kept, width or len(runs), pool_begins=False) as progress,
-            watched(client, most, partial(click.echo, err=True)),
-        ):
-            sweep(runs, records, client.get_executor(pure=False), execute, progress, stop)
+    most = max(longest(run.job.budget) for run in runs)
+    with (
+        pool(jobs, dask, most, partial(click.echo, err=True)) as there,
+        Progress(len(runs), kept, there.width or len(runs), pool_begins=there.here) as progress,
+    ):
+        sweep(runs, records, there.executor, local_task(stop, progress) if there.here else execute, progress, stop)

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from smash.cli.choices import engine_option, say_engine
+from smash.cli.choices import dask_option, engine_option, say_engine
 from smash.cli.signals import stopped_by_signals
-from smash.problem.errors import Interrupted, SmashError
+from smash.problem.errors import SmashError
 from smash.problem.extras import EXECUTION, require
 from smash.problem.words import one_line
 
 if TYPE_CHECKING:
-    require("smash topple-map", *EXECUTION, "matplotlib")
+    from smash.experiments.episodes.question import TrialRun
     from smash.records.trials import Trial
 
 
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 @click.option("--scene", type=click.Path(path_type=Path), help="Scene file (default: the built-in scene).")
 @engine_option
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="At a time.")
+@dask_option
 @click.option(
     "--model", type=click.Path(path_type=Path, dir_okay=False), help="Write the scene's outcome model here, too."
 )
@@ -50,6 +52,7 @@ def command(
     scene: Path | None,
     engine: str | None,
     jobs: int,
+    dask: str | None,
     model: Path | None,
     against: Path | None,
     out: Path,
@@ -66,14 +69,20 @@ def command(
       smash topple-map --scene my-scene.toml --out runs/my-map --model my-model.json
       smash plan my.json --objective seconds --model my-model.json
       smash topple-map --first-seed 4 --out runs/check --against my-model.json
+      smash topple-map --dask tcp://head:8786 --out runs/my-map
     """
+    require("smash topple-map", *EXECUTION, "matplotlib")
     from smash.execution.physics.engines import engine_of
     from smash.execution.scene.scene_file import default_scene, read_scene
     from smash.execution.trials.calibration import calibrations, require_comparable, table
     from smash.execution.trials.estimates import ENOUGH, TRUSTED, write_estimates
     from smash.execution.trials.outcome_model import outcome_model
     from smash.execution.trials.topple_map import draw, estimates
-    from smash.experiments.episodes.topple_trials import run_trials, wanted_trials
+    from smash.experiments.episodes.simulation import LONGEST
+    from smash.experiments.episodes.topple_trials import run_apart, wanted_trials
+    from smash.experiments.isolation.job import longest
+    from smash.experiments.sweeps.pool import pool
+    from smash.experiments.sweeps.sweep import sweep
     from smash.forecast.model import read_model, write_model
     from smash.problem.files.documents import require_writable, write_text
     from smash.records.files import TRIALS
@@ -94,20 +103,15 @@ def command(
     trials: dict[Hashable, Trial] = {}
     wanted = wanted_trials(tabletop, engine, highest_cut, most, chosen_seeds)
 
-    def ended(trial: Trial) -> None:
-        trials[trial.key] = trial
-        words = "success" if trial.success else trial.problem or "failure"
-        done = sum(key in trials for key in wanted)
-        click.echo(f"[{done}/{len(wanted)}] cut {trial.height}, {trial.falling} falling: {words}", err=True)
-
     with stopped_by_signals() as stop, Writer(out, TRIALS) as records:
         trials |= {trial.key: trial for trial in records.earlier}
         for line in records.set_aside:
             click.echo(one_line(f"{line}: damaged: set aside, its trial is done again"), err=True)
-        run_trials(tabletop, engine, wanted, records, jobs, stop, ended)
-        if stop.is_set():
-            raise Interrupted("interrupted; every finished trial is recorded, start again to do the rest")
-    chosen = [trials[key] for key in wanted]
+        if any(run.key not in records.finished for run in wanted):
+            with pool(jobs, dask, longest(LONGEST), partial(click.echo, err=True)) as there:
+                task = partial(run_apart, stop=stop) if there.here else run_apart
+                sweep(wanted, records, there.executor, task, _Said(trials, wanted), stop)
+    chosen = [trials[run.key] for run in wanted]
     found = estimates(tabletop.name, chosen)
     write_estimates(found, out / "estimates.json")
     draw(chosen, out / "map.png")
@@ -125,3 +129,18 @@ def command(
     suggested = found.suggested_max_topple
     none = f"none is trusted: {ENOUGH} trials of a size or more, {TRUSTED:.0%} of them successful, are needed"
     click.echo(f"{len(chosen)} trials in {out}; " + (f"suggested --max-topple {suggested}" if suggested else none))
+
+
+class _Said:
+    """Keeps each trial, and says how it went."""
+
+    def __init__(self, trials: dict[Hashable, Trial], wanted: Sequence[TrialRun]) -> None:
+        self._trials = trials
+        self._wanted = wanted
+
+    def ended(self, run: TrialRun, trial: Trial) -> None:
+        """Say it."""
+        self._trials[run.key] = trial
+        words = "success" if trial.success else trial.problem or "failure"
+        done = sum(wanted.key in self._trials for wanted in self._wanted)
+        click.echo(f"[{done}/{len(self._wanted)}] cut {trial.height}, {trial.falling} falling: {words}", err=True)

@@ -127,6 +127,23 @@ def test_a_scheduler_that_dies_loses_no_record_and_is_one_line(cluster, experime
     assert len(records(out)) >= 5
 
 
+def test_a_scheduler_that_is_stopped_is_given_up_and_loses_no_record(cluster, experiment, tmp_path):
+    scheduler, process = cluster
+    out = tmp_path / "out"
+    running = subprocess.Popen(command(experiment, out, "--dask", scheduler), stderr=subprocess.PIPE, text=True)
+    while not (out / RUNS.name).exists() or (out / RUNS.name).read_text().count("\n") < 5:
+        time.sleep(0.05)
+    process.send_signal(signal.SIGSTOP)
+    try:
+        _, said = running.communicate(timeout=200)
+    finally:
+        process.send_signal(signal.SIGCONT)
+    assert running.returncode == 7
+    assert "the scheduler stands still: no answer of it for 60 s" in said.splitlines()[-1]
+    assert "Traceback" not in said
+    assert len(records(out)) >= 5
+
+
 def test_the_batch_script_runs_the_sweep_where_slurm_is_a_stand_in(experiment, tmp_path, monkeypatch):
     monkeypatch.setenv("STARTS", str(tmp_path / "starts"))
     experiment.write_text(

@@ -12,8 +12,9 @@ import msgspec
 import psutil
 import pytest
 
-from smash.experiments.episodes.series import episode_runs, target_depth
-from smash.experiments.episodes.worker import EpisodeLost, EpisodeWorker
+from smash.experiments.episodes.series import episode_runs, run_episode, target_depth
+from smash.experiments.episodes.simulation import Simulation
+from smash.experiments.isolation.hearing import done
 from smash.problem import PositionsGoal, make_instance
 from smash.problem.errors import SmashError
 from smash.problem.extras import is_there
@@ -58,18 +59,22 @@ def test_every_plan_is_carried_out_once_and_kept(results):
 
 
 @simulated
-def test_a_process_that_dies_costs_one_episode_and_the_next_is_the_same_as_alone(results):
+def test_an_episode_that_dies_is_recorded_with_its_reason_and_the_next_is_the_same_as_alone(results):
     run = episode_runs(results, [1], ["open"])[0]
-    worker = EpisodeWorker()
-    try:
-        first = worker.ask(run)
-        again = worker.ask(run)
-        with pytest.raises(EpisodeLost, match="missing required field"):
-            worker.ask({})
-        afresh = worker.ask(run)
-    finally:
-        worker.close()
-    assert unmeasured(first) == unmeasured(again) == unmeasured(afresh)
+    first, lost, again = (run_episode(asked) for asked in (run, msgspec.structs.replace(run, tabletop={}), run))
+    assert lost.episode is None
+    assert "missing required field" in lost.problem
+    assert unmeasured(first.episode) == unmeasured(again.episode)
+
+
+@simulated
+@pytest.mark.parametrize(
+    ("limits", "said"), [({"budget": 0.01}, "still running after"), ({"memory": 20}, "the limit is 20")]
+)
+def test_limits_hold_for_episodes_as_for_planners(results, limits, said):
+    ended = done(Simulation(episode_runs(results, [1], ["open"])[0], **limits))
+    assert ended.answer is None
+    assert said in ended.reason
 
 
 def unmeasured(episode):

@@ -15,7 +15,7 @@ import pytest
 from smash.experiments.isolation.caller import run_isolated, when
 from smash.experiments.isolation.job import Job
 from smash.experiments.isolation.shared_memory import PLACE, segments
-from smash.experiments.isolation.starting import SHARED
+from smash.experiments.isolation.starting import shared_server
 from smash.planners.protocol import Settings
 from smash.problem import PlanOptions
 from smash.problem.errors import SmashError
@@ -73,7 +73,7 @@ def alive(monkeypatch, tmp_path):
 
     def count():
         found = {*marked(mark), *psutil.Process().children(recursive=True)}
-        return [p for p in found if p.pid not in (os.getpid(), SHARED._process) and runs(p)]
+        return [p for p in found if p.pid not in (os.getpid(), shared_server(Job.loaded_by)._process) and runs(p)]
 
     return count
 

@@ -14,7 +14,7 @@ import smash
 from smash.experiments.isolation import starting
 from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import Job
-from smash.experiments.isolation.starting import guardian_of
+from smash.experiments.isolation.starting import guardian_of, shared_server
 from smash.planners.protocol import Settings
 from smash.problem.problem import Problem
 
@@ -39,9 +39,9 @@ def said(program):
 def test_a_process_there_for_one_run_copies_itself_unless_it_has_a_second_thread():
     assert said("""
 def kind(**how):
-    starting.SHARED.close()
+    shared_server(Job.loaded_by).close()
     with guardian_of(job(), **how):
-        return "copied" if starting.SHARED._socket is None else "fresh"
+        return "copied" if shared_server(Job.loaded_by)._socket is None else "fresh"
 
 print(kind(may_fork=True), kind(may_fork=False))
 ends = threading.Event()
@@ -56,7 +56,7 @@ def test_one_server_serves_all_runs_and_has_one_thread():
 servers = set()
 for _ in range(3):
     run_isolated(job())
-    servers.add(starting.SHARED._process)
+    servers.add(shared_server(Job.loaded_by)._process)
 (server,) = servers
 print(psutil.Process(server).num_threads(), len(psutil.Process(server).children()))
 """) == ["1", "0"]
@@ -66,7 +66,7 @@ def test_a_killed_server_costs_no_run():
     assert said("""
 for _ in range(2):
     print(run_isolated(job()).outcome)
-    psutil.Process(starting.SHARED._process).kill()
+    psutil.Process(shared_server(Job.loaded_by)._process).kill()
     time.sleep(0.1)
 print(run_isolated(job()).outcome)
 """) == ["feasible", "feasible", "feasible"]
@@ -77,7 +77,7 @@ def test_a_server_that_stands_still_is_replaced():
     assert said("""
 starting._FORKING = 2.0
 run_isolated(job())
-psutil.Process(starting.SHARED._process).suspend()
+psutil.Process(shared_server(Job.loaded_by)._process).suspend()
 print(run_isolated(job()).outcome)
 """) == ["feasible"]
 

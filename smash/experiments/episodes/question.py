@@ -1,23 +1,25 @@
-"""What is asked of a process that runs episodes: one plan, how it is to be carried out."""
+"""What is asked of a process that simulates: one plan and how it is to be carried out, or one topple."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import msgspec
 
 from smash.records.runs import RunRecord
+from smash.records.trials import Key
 
 
-class EpisodeRun(msgspec.Struct, frozen=True):
+class EpisodeRun(msgspec.Struct, frozen=True, tag="episode"):
     """One episode to be run.
 
     Attributes:
         record: The run that holds its plan.
         seed: Of the episode.
         policy: Of `smash.experiments.episodes.series.POLICIES`.
-        scene: The scene file, or None for the built-in scene.
+        scene: What records call the scene, or None for the built-in scene.
         told: What `told_apart` says of the scene, or None for the built-in scene.
-        noise: In place of the scene's own, or None.
-        pace: The same.
+        tabletop: The scene itself as plain data, or None for the built-in scene.
         replay: The page to write, or None.
         engine: What simulates it.
     """
@@ -25,11 +27,10 @@ class EpisodeRun(msgspec.Struct, frozen=True):
     record: RunRecord
     seed: int
     policy: str
-    scene: str | None
+    scene: str | None = None
     told: str | None = None
+    tabletop: dict[str, Any] | None = None
     replay: str | None = None
-    noise: str | None = None
-    pace: float | None = None
     engine: str = "pybullet"
 
     @property
@@ -37,3 +38,17 @@ class EpisodeRun(msgspec.Struct, frozen=True):
         """Names the episode for good."""
         words = [self.record.key, self.policy, str(self.seed), *filter(None, [self.told])]
         return "/".join(words if self.engine == "pybullet" else [*words, self.engine])
+
+
+class TrialRun(msgspec.Struct, frozen=True, tag="trial"):
+    """One trial of a topple to be run.
+
+    Attributes:
+        key: As that of its record: scene, stack, height of the cut, number falling, seed.
+        tabletop: The scene as plain data.
+        engine: What simulates it.
+    """
+
+    key: Key
+    tabletop: dict[str, Any]
+    engine: str

@@ -8,18 +8,19 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from threading import Event
 from time import perf_counter
+from typing import Any, cast
 
 import msgspec
 
 from smash.experiments.environment import commit, load, machine, versions
 from smash.experiments.episodes.question import EpisodeRun
-from smash.experiments.episodes.worker import Crew, EpisodeLost
+from smash.experiments.episodes.simulation import Simulation
+from smash.experiments.isolation.hearing import done
 from smash.problem.errors import SmashError
 from smash.problem.files.instances import instance_from_document
 from smash.problem.model import Instance, PositionsGoal
@@ -27,7 +28,6 @@ from smash.records.believing import judge
 from smash.records.episodes import EPISODE_RUN_FORMAT, Episode, EpisodeRecord
 from smash.records.files import RUNS
 from smash.records.reading import read
-from smash.records.writing import Writer
 
 REPLAYS = "replays"
 POLICIES = ("replan", "open")
@@ -58,6 +58,13 @@ def scene_name(scene: str | os.PathLike[str] | None, noise: str | None = None, p
     words += [] if noise is None else [noise_words(parse_noise(noise)) or "exact"]
     words += [] if pace is None else [f"pace={pace:g}"]
     return " ".join(words)
+
+
+def scene_document(scene: str | os.PathLike[str] | None, noise: str | None, pace: float | None) -> dict[str, Any]:
+    """Return a scene as plain data, which goes to processes and machines that do not see its file."""
+    from smash.execution.scene.scene_file import scene_of
+
+    return cast("dict[str, Any]", msgspec.to_builtins(scene_of(scene, noise, pace)))
 
 
 def episode_runs(
@@ -98,9 +105,10 @@ def episode_runs(
         if label not in known:
             raise SmashError(f"{reading.path}: no plan by {label!r}; there are plans by {', '.join(sorted(known))}")
     plans = [record for record in plans if not labels or record.label in labels]
-    told = told or told_apart(scene, noise, pace)
+    name, told = scene_name(scene, noise, pace), told or told_apart(scene, noise, pace)
+    tabletop = None if name is None else scene_document(scene, noise, pace)
     runs = [
-        EpisodeRun(record, seed, policy, scene, told, noise=noise, pace=pace, engine=engine)
+        EpisodeRun(record, seed, policy, name, told, tabletop, engine=engine)
         for seed in seeds
         for record in plans
         for policy in policies
@@ -120,42 +128,19 @@ def _replay(results: Path, run: EpisodeRun) -> str:
     return str((results / REPLAYS / f"{name}.html").resolve())
 
 
-def run_all(
-    runs: Iterable[EpisodeRun],
-    records: Writer[EpisodeRecord],
-    jobs: int,
-    stop: Event,
-    ended: Callable[[EpisodeRun, EpisodeRecord], None],
-) -> None:
-    """Run what is not recorded yet, `jobs` at a time; where `stop` is set, leave at once what is under way."""
-    left = [run for run in runs if run.key not in records.finished]
-    with Crew(jobs) as crew, ThreadPoolExecutor(jobs) as pool:
-        waiting: dict[Future[EpisodeRecord], EpisodeRun] = {}
-        source: Iterator[EpisodeRun] = iter(left)
-        while True:
-            while len(waiting) < jobs and not stop.is_set() and (run := next(source, None)) is not None:
-                waiting[pool.submit(run_apart, run, crew)] = run
-            if stop.is_set():
-                crew.close()
-            if not waiting:
-                return
-            for future in wait(waiting, timeout=0.5, return_when=FIRST_COMPLETED).done:
-                run = waiting.pop(future)
-                record = future.result()
-                if not stop.is_set():
-                    records.append(record)
-                    ended(run, record)
+def run_episode(run: EpisodeRun, stop: Event | None = None) -> EpisodeRecord | None:
+    """Run one episode in processes of its own; None where `stop` was set before it ended.
 
-
-def run_apart(run: EpisodeRun, crew: Crew) -> EpisodeRecord:
-    """Run one episode in a process of the crew; the record's `episode` is None where that process ended badly."""
+    The record's `episode` is None where those processes ended badly.
+    """
+    if stop is not None and stop.is_set():
+        return None
     started, begun, before = datetime.now(UTC), perf_counter(), load()
-    episode, problem = None, ""
-    try:
-        episode = crew.ask(run)
-    except EpisodeLost as loss:
-        problem = str(loss)
-    return _record(run, episode, problem, started, perf_counter() - begun, before)
+    ended = done(Simulation(run), stop)
+    if ended.interrupted:
+        return None
+    episode = None if ended.answer is None else msgspec.convert(ended.answer, Episode)
+    return _record(run, episode, ended.reason, started, perf_counter() - begun, before)
 
 
 def _record(
@@ -174,7 +159,7 @@ def _record(
         variant=plan.variant,
         policy=run.policy,
         seed=run.seed,
-        scene=scene_name(run.scene, run.noise, run.pace),
+        scene=run.scene,
         engine=run.engine,
         blocks=len(instance.blocks),
         depth=target_depth(instance),

@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import get_context
 from threading import Event
 
+import msgspec
+
 from smash.execution.scene.tabletop import Tabletop
-from smash.execution.trials.topple_map import run_trial
-from smash.experiments.isolation.lifetime import end_with_parent
+from smash.experiments.episodes.question import TrialRun
+from smash.experiments.episodes.simulation import Simulation
+from smash.experiments.isolation.hearing import done
 from smash.problem.errors import SmashError
-from smash.records.trials import Key, Trial, simulated
-from smash.records.writing import Writer
+from smash.records.trials import Trial, simulated
 
 
-def wanted_trials(tabletop: Tabletop, engine: str, highest_cut: int, most: int, seeds: range) -> list[Key]:
+def wanted_trials(tabletop: Tabletop, engine: str, highest_cut: int, most: int, seeds: range) -> list[TrialRun]:
     """Return every trial that the scene allows: seeds first, so that a part is a fair sample; stacks in turn."""
+    document, layout = msgspec.to_builtins(tabletop), simulated(tabletop.fingerprint, engine)
     return [
-        (simulated(tabletop.fingerprint, engine), seed % len(tabletop.stacks), height, falling, seed)
+        TrialRun((layout, seed % len(tabletop.stacks), height, falling, seed), document, engine)
         for seed in seeds
         for height in range(1, highest_cut + 1)
         for falling in range(1, most + 1)
@@ -28,43 +26,19 @@ def wanted_trials(tabletop: Tabletop, engine: str, highest_cut: int, most: int, 
     ]
 
 
-def run_trials(
-    tabletop: Tabletop,
-    engine: str,
-    keys: Sequence[Key],
-    records: Writer[Trial],
-    jobs: int,
-    stop: Event,
-    ended: Callable[[Trial], None],
-) -> None:
-    """Run what is not recorded yet, `jobs` at a time; where `stop` is set, leave what is under way.
-
-    Args:
-        tabletop: the scene.
-        engine: what simulates them.
-        keys: the trials that are wanted.
-        records: where each is recorded as it ends.
-        jobs: how many run at a time.
-        stop: ends it early.
-        ended: is told of each.
+def run_apart(run: TrialRun, stop: Event | None = None) -> Trial | None:
+    """Do one trial in processes of its own; None where `stop` was set before it ended.
 
     Raises:
-        SmashError: where a process of the simulator ended badly.
+        SmashError: where those processes ended badly.
     """
-    context = get_context("spawn")
-    pool = ProcessPoolExecutor(jobs, mp_context=context, initializer=end_with_parent, initargs=(os.getpid(),))
-    left = [key for key in keys if key not in records.finished]
-    try:
-        waiting: set[Future[Trial]] = {pool.submit(run_trial, tabletop, *key[1:], engine) for key in left}
-        while waiting and not stop.is_set():
-            done, waiting = wait(waiting, timeout=0.5, return_when=FIRST_COMPLETED)
-            for trial in (future.result() for future in done):
-                records.append(trial)
-                ended(trial)
-    except BrokenProcessPool:
-        raise SmashError(f"a trial's process ended badly; start again, {records.path} keeps the others") from None
-    finally:
-        processes = list((pool._processes or {}).values()) if stop.is_set() else []
-        pool.shutdown(wait=not processes, cancel_futures=True)
-        for process in processes:
-            process.kill()
+    if stop is not None and stop.is_set():
+        return None
+    ended = done(Simulation(run), stop)
+    if ended.interrupted:
+        return None
+    if ended.answer is None:
+        _, stack, height, falling, seed = run.key
+        which = f"cut {height}, {falling} falling, stack {stack}, seed {seed}"
+        raise SmashError(f"a trial's process ended badly ({which}): {ended.reason}; start again, the others are kept")
+    return msgspec.convert(ended.answer, Trial)

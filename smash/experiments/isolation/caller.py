@@ -7,16 +7,13 @@ by the law here, whatever planner made it.
 from __future__ import annotations
 
 import json
-import os
-import selectors
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from threading import Event
 from time import monotonic
 from typing import Any
 
+from smash.experiments.isolation.hearing import hear_out
 from smash.experiments.isolation.job import STARTUP_LIMIT, Job, Report, longest
-from smash.experiments.isolation.lines import Lines
-from smash.experiments.isolation.starting import Guardian, guardian_of
 from smash.planners.protocol import OnIncumbent
 from smash.problem.errors import SmashError
 from smash.problem.files.plans import action_from_list
@@ -28,8 +25,6 @@ from smash.records.outcomes import OutcomeName
 
 LATENCY = 0.25
 """Seconds that a line may take on its way: a plan that is said to be older than that counts from its arrival."""
-_PATIENCE = 20.0
-"""Seconds that a guardian has to say how a run ended that was stopped."""
 
 SAID_BY_PLANNERS = frozenset({"crashed", "memory", "not-installed", "malformed", "unsupported"})
 """Outcomes that the process of a planner may name."""
@@ -48,29 +43,8 @@ def run_isolated(
             may then be forked, which saves loading everything again.
     """
     heard = _Heard(job, on_incumbent)
-    with guardian_of(job, may_fork=for_this) as guardian:
-        for line in _lines(guardian, heard, stop):
-            if not heard.hear(line):
-                break
+    hear_out(job, heard, stop, may_fork=for_this)
     return heard.report(interrupted=stop is not None and stop.is_set())
-
-
-def _lines(guardian: Guardian, heard: _Heard, stop: Event | None) -> Iterator[bytes]:
-    """Yield what the guardian says until it ends; where `stop` is set, close its input and hear it out."""
-    said = Lines()
-    with selectors.DefaultSelector() as selector:
-        selector.register(guardian.stdout, selectors.EVENT_READ)
-        while monotonic() < heard.until:
-            if stop is not None and stop.is_set() and not guardian.stdin.closed:
-                guardian.stdin.close()
-                heard.until = monotonic() + _PATIENCE
-            if not selector.select(0.1):
-                continue
-            chunk = os.read(guardian.stdout.fileno(), 1 << 16)
-            if not chunk:
-                return
-            yield from said.feed(chunk)
-    heard.silent = True
 
 
 def when(said: float, arrived: float) -> float:

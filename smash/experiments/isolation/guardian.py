@@ -20,18 +20,19 @@ import signal
 import sys
 import tempfile
 from contextlib import suppress
+from pkgutil import resolve_name
 from time import monotonic, sleep
 from types import FrameType
 from typing import Any, BinaryIO, NoReturn
 
 import psutil
 
-from smash.experiments.isolation.job import STARTUP_LIMIT, Job, grace, still_running
+from smash.experiments.isolation.job import STARTUP_LIMIT, grace, still_running
 from smash.experiments.isolation.leftovers import Left, end_tree, scratch_prefix
 from smash.experiments.isolation.lifetime import adopt_orphans, end_with_parent
 from smash.experiments.isolation.lines import Lines
 from smash.experiments.isolation.shared_memory import SharedMemory, mapped, set_apart
-from smash.experiments.isolation.solving import solve
+from smash.experiments.isolation.work import Work
 
 _LOST = 1
 """Exit code of a planner's process that cannot even say what happened."""
@@ -44,7 +45,7 @@ SAMPLING = 0.1
 SAID_LINES = 20
 
 
-def guard(job: Job, left: Left, apart: bool) -> None:
+def guard(job: Work, left: Left, apart: bool) -> None:
     """Run a job, write what happens to standard output, and end it where standard input closes.
 
     Args:
@@ -73,7 +74,7 @@ def guard(job: Job, left: Left, apart: bool) -> None:
         shutil.rmtree(scratch, ignore_errors=True)
 
 
-def _guard(job: Job, said: BinaryIO, scratch: str, shared: SharedMemory) -> None:
+def _guard(job: Work, said: BinaryIO, scratch: str, shared: SharedMemory) -> None:
     os.environ["TMPDIR"] = scratch
     tempfile.tempdir = None
     pipe, planner = _start(job, said)
@@ -89,7 +90,7 @@ def _leave(signum: int, frame: FrameType | None) -> NoReturn:
     raise SystemExit(128 + signum)
 
 
-def _start(job: Job, said: BinaryIO) -> tuple[int, int]:
+def _start(job: Work, said: BinaryIO) -> tuple[int, int]:
     """Fork the planner's process; return the pipe on which it talks and its process id."""
     reading, writing = os.pipe()
     guardian = os.getpid()
@@ -108,7 +109,7 @@ def _start(job: Job, said: BinaryIO) -> tuple[int, int]:
             os.dup2(source, target)
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         faulthandler.enable()
-        solve(job, writing)
+        resolve_name(job.done_by)(job, writing)
     finally:
         os._exit(_LOST)
 
@@ -116,7 +117,7 @@ def _start(job: Job, said: BinaryIO) -> tuple[int, int]:
 class _Watch:
     """Passes on what the planner says, and ends it at its limits."""
 
-    def __init__(self, job: Job, planner: int, pipe: int, said: BinaryIO, scratch: str, shared: SharedMemory) -> None:
+    def __init__(self, job: Work, planner: int, pipe: int, said: BinaryIO, scratch: str, shared: SharedMemory) -> None:
         self.job = job
         self.shared = shared
         self.scratch = scratch

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from smash.planners.protocol import Settings
 from smash.problem.files.instances import instance_document, instance_from_document
@@ -41,6 +41,9 @@ def longest(budget: float) -> float:
 @dataclass(frozen=True, slots=True)
 class Job:
     """One call of a planner: `budget` in seconds of wall time, `memory` in MiB over all of its processes."""
+
+    done_by: ClassVar[str] = "smash.experiments.isolation.solving:solve"
+    loaded_by: ClassVar[str] = "smash.experiments.isolation.solving:load"
 
     planner: str
     problem: Problem

@@ -19,25 +19,29 @@ import signal
 import socket
 import sys
 from contextlib import suppress
+from pkgutil import resolve_name
 from typing import Any, NoReturn
 
 import psutil
 
 from smash.experiments.isolation.guardian import guard
-from smash.experiments.isolation.job import Job
 from smash.experiments.isolation.leftovers import MARK, Left, clear_away, end_tree
 from smash.experiments.isolation.lifetime import adopt_orphans
 from smash.experiments.isolation.shared_memory import may_be_apart
+from smash.experiments.isolation.work import Work, work_document, work_from_document
 
 REQUEST_BYTES = 1 << 16
 """Longest request on the socket: what becomes of a run's leftovers, and three files."""
 
 
-def main(connection: int) -> None:
-    """Serve on a socket that was inherited, until its other end closes."""
-    from smash.planners.registry import planner_names
+def main(connection: int, loaded_by: str) -> None:
+    """Serve on a socket that was inherited, until its other end closes.
 
-    planner_names()  # entry points are read once for all runs; no planner is imported
+    Args:
+        connection: the socket.
+        loaded_by: of the work that it forks for (`Work.loaded_by`).
+    """
+    resolve_name(loaded_by)()
     serve(socket.socket(fileno=connection))
 
 
@@ -125,7 +129,7 @@ def _be_guardian(asked: int, told: int, left: Left, apart: bool) -> NoReturn:
         keep_only(asked, told)
         request = json.loads(sys.stdin.buffer.readline())
         surroundings(request)
-        guard(Job.from_document(request["job"]), left, apart)
+        guard(work_from_document(request["job"]), left, apart)
         code = 0
     except SystemExit as ended:
         code = ended.code if isinstance(ended.code, int) else 1
@@ -162,14 +166,14 @@ def search_path() -> list[str]:
     return [os.path.abspath(entry) for entry in sys.path]
 
 
-def request_line(job: Job, mark: str) -> bytes:
+def request_line(job: Work, mark: str) -> bytes:
     """Return what a guardian is told on its input: its job, and the surroundings of this process."""
     try:
         folder = os.getcwd()
     except OSError:  # it was removed
         folder = os.sep
     request = {
-        "job": job.document(),
+        "job": work_document(job),
         "environment": {**os.environ, MARK: mark},
         "path": search_path(),
         "folder": folder,

@@ -5,19 +5,15 @@ Lines: `solving` (the clock starts), `incumbent` and `bound` (at once), then `re
 
 from __future__ import annotations
 
-import json
 import math
-import os
-import sys
-import threading
-import traceback
 from collections.abc import Sequence
 from time import perf_counter
 from typing import Any, NoReturn
 
 from smash.experiments.isolation.job import Job
+from smash.experiments.isolation.voice import Voice, to_its_end
 from smash.planners.protocol import ask
-from smash.planners.registry import get_planner, make_ready, why_unknown
+from smash.planners.registry import get_planner, make_ready, planner_names, why_unknown
 from smash.problem.errors import SmashError, Unsupported
 from smash.problem.extras import MissingExtra
 from smash.problem.files.plans import action_list
@@ -25,19 +21,15 @@ from smash.problem.model import Action
 from smash.problem.plan import STATUSES, Plan
 
 
+def load() -> None:
+    """Load what runs need in common: entry points are read once for all of them; no planner is imported."""
+    planner_names()
+
+
 def solve(job: Job, pipe: int) -> NoReturn:
-    """Run the job and end the process; nothing is left to the interpreter's shutdown, where threads can hang."""
+    """Run the job and end the process."""
     voice = _Voice(pipe)
-    try:
-        _solve(job, voice)
-    except MemoryError as error:
-        voice.say(kind="failed", outcome="memory", reason=_words(error))
-    except BaseException as error:
-        voice.say(kind="failed", outcome="crashed", reason=_words(error))
-        traceback.print_exc()
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(0)
+    to_its_end(voice, lambda: _solve(job, voice))
 
 
 def _solve(job: Job, voice: _Voice) -> None:
@@ -64,19 +56,12 @@ def _solve(job: Job, voice: _Voice) -> None:
     return None
 
 
-class _Voice:
+class _Voice(Voice):
     """The pipe to the guardian, and the planner's `on_incumbent`; planners may report from any thread."""
 
     def __init__(self, pipe: int) -> None:
-        self._pipe = pipe
-        self._lock = threading.Lock()
+        super().__init__(pipe)
         self.started = 0.0
-
-    def say(self, **message: Any) -> None:
-        line = memoryview(json.dumps(message).encode() + b"\n")
-        with self._lock:
-            while line:
-                line = line[os.write(self._pipe, line) :]
 
     def __call__(self, seconds: float, cost: int, actions: Sequence[Action]) -> None:
         """Report a plan."""
@@ -125,10 +110,3 @@ def jsonable(value: Any) -> Any:
             return [jsonable(part) for part in value]
     plain = getattr(value, "item", None)
     return jsonable(plain()) if plain is not None and getattr(value, "ndim", 1) == 0 else str(value)
-
-
-def _words(error: BaseException) -> str:
-    """Return the exception in one line, with the place where it was raised."""
-    frames = traceback.extract_tb(error.__traceback__)
-    place = f" ({os.path.basename(frames[-1].filename)}:{frames[-1].lineno})" if frames else ""
-    return " ".join(f"{type(error).__name__}: {error}".split())[:500] + place

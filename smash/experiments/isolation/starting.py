@@ -20,14 +20,15 @@ from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
+from pkgutil import resolve_name
 from time import monotonic, sleep
 from typing import IO
 
 import psutil
 
-from smash.experiments.isolation.job import Job
 from smash.experiments.isolation.leftovers import Left, clear_away
 from smash.experiments.isolation.server import keep_only, request_line, search_path, serve
+from smash.experiments.isolation.work import Work
 from smash.problem.errors import SmashError
 
 _ENDING = 10.0
@@ -37,6 +38,8 @@ _STARTING = 60.0
 _FORKING = 10.0
 """Seconds that one has that has done so before."""
 _ATTEMPTS = 3
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+"""What a server loads starts no threads: a copy of a process is whole only where that has one."""
 _POLLING = 0.002
 """Seconds between two looks whether a server has ended."""
 
@@ -91,7 +94,7 @@ class Guardian:
 
 
 @contextmanager
-def guardian_of(job: Job, *, may_fork: bool) -> Iterator[Guardian]:
+def guardian_of(job: Work, *, may_fork: bool) -> Iterator[Guardian]:
     """A guardian of a job; afterwards all of the run's processes are gone.
 
     Args:
@@ -102,15 +105,15 @@ def guardian_of(job: Job, *, may_fork: bool) -> Iterator[Guardian]:
         SmashError: where no process can be started.
     """
     if may_fork and _has_one_thread():
-        with closing(ForkServer(copied=True)) as server, _ending(server, job) as guardian:
+        with closing(ForkServer(job.loaded_by, copied=True)) as server, _ending(server, job) as guardian:
             yield guardian
         return
-    with _ending(SHARED, job) as guardian:
+    with _ending(shared_server(job.loaded_by), job) as guardian:
         yield guardian
 
 
 @contextmanager
-def _ending(server: ForkServer, job: Job) -> Iterator[Guardian]:
+def _ending(server: ForkServer, job: Work) -> Iterator[Guardian]:
     left = Left.by(os.urandom(16).hex())
     guardian = server.guardian(job, left)
     try:
@@ -133,10 +136,12 @@ class ForkServer:
     """The server of this process: started when it is first asked, and again where it was killed.
 
     Args:
+        loaded_by: of the work that it is asked for (`Work.loaded_by`).
         copied: whether it is a copy of this process, which has one thread, in place of an interpreter of its own.
     """
 
-    def __init__(self, copied: bool = False) -> None:
+    def __init__(self, loaded_by: str, copied: bool = False) -> None:
+        self._loaded_by = loaded_by
         self._copied = copied
         self._lock = threading.Lock()
         self._socket: socket.socket | None = None
@@ -144,7 +149,7 @@ class ForkServer:
         self._owner = 0
         self._has_forked = False
 
-    def guardian(self, job: Job, left: Left) -> Guardian:
+    def guardian(self, job: Work, left: Left) -> Guardian:
         """Have a guardian forked and tell it its job.
 
         Raises:
@@ -198,7 +203,7 @@ class ForkServer:
             self._socket, its = socket.socketpair()
             self._owner = os.getpid()
             self._has_forked = False
-            self._process = _copy(its) if self._copied else _fresh(its)
+            self._process = (_copy if self._copied else _fresh)(its, self._loaded_by)
             its.close()
         return self._socket
 
@@ -216,15 +221,27 @@ class ForkServer:
                 sleep(_POLLING)
 
 
-SHARED = ForkServer()
-"""The server of all runs of this process."""
-atexit.register(SHARED.close)
+_SERVERS: dict[str, ForkServer] = {}
+"""The servers of this process, by what they have loaded."""
 
 
-def _fresh(connection: socket.socket) -> int:
+def shared_server(loaded_by: str) -> ForkServer:
+    """Return the server of all work of this process that has the same to be loaded."""
+    return _SERVERS.setdefault(loaded_by, ForkServer(loaded_by))
+
+
+def _close_all() -> None:
+    for server in _SERVERS.values():
+        server.close()
+
+
+atexit.register(_close_all)
+
+
+def _fresh(connection: socket.socket, loaded_by: str) -> int:
     """Start a server in an interpreter of its own; return its process id."""
-    begin = "import sys; sys.path[:] = {!r}; from smash.experiments.isolation.server import main; main({})"
-    program = begin.format(search_path(), connection.fileno())
+    begin = "import sys; sys.path[:] = {!r}; from smash.experiments.isolation.server import main; main({}, {!r})"
+    program = begin.format(search_path(), connection.fileno(), loaded_by)
     process = subprocess.Popen(
         [sys.executable, "-P", "-c", program],
         stdin=subprocess.DEVNULL,
@@ -232,13 +249,15 @@ def _fresh(connection: socket.socket) -> int:
         stderr=subprocess.DEVNULL,
         pass_fds=[connection.fileno()],
         start_new_session=True,
+        env={**os.environ, **ONE_THREAD},
     )
     process.returncode = 0  # collected by `ForkServer`, not by the object that goes here
     return process.pid
 
 
-def _copy(connection: socket.socket) -> int:
+def _copy(connection: socket.socket, loaded_by: str) -> int:
     """Copy this process as a server; return its process id."""
+    resolve_name(loaded_by)  # imported, lest each run does it
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)  # ignored, as some leave it, nothing is waited for
     sys.stdout.flush()
     sys.stderr.flush()

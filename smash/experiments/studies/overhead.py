@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import Job
-from smash.experiments.isolation.starting import SHARED
+from smash.experiments.isolation.starting import shared_server
 from smash.planners.protocol import Settings
 from smash.problem.problem import Problem
 from smash.problem.sets.suites import read_suite
@@ -41,10 +41,10 @@ def _round(planner: str) -> tuple[float, float, float]:
 def _processor_time(planner: str, runs: int) -> tuple[float, float]:
     """Return the processor time of so many runs with a server of their own, and the planner's own in one [s]."""
     job = Job(planner, Problem(read_suite(SUITE)[0]), Settings(), 5.0)
-    SHARED.close()
+    shared_server(Job.loaded_by).close()
     before = _spent()
     own = statistics.fmean(run_isolated(job).cpu_seconds or 0.0 for _ in range(runs))
-    SHARED.close()  # its own time, and that of its children, counts once it has been waited for
+    shared_server(Job.loaded_by).close()  # its own time, and that of its children, counts once it has been waited for
     return _spent() - before, own
 
 

@@ -7,7 +7,7 @@ import math
 import shlex
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -46,7 +46,8 @@ def connected(where: str) -> Iterator[Any]:
     try:
         yield client
     finally:
-        client.close(timeout=5)
+        with suppress(TimeoutError):  # the scheduler stands still
+            client.close(timeout=5)
 
 
 def slurm_script(runs: Sequence[Run], experiment: Path, out: Path, workers: int) -> str:

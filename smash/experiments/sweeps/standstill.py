@@ -17,6 +17,10 @@ from typing import Any
 
 SILENCE = 30.0
 """Seconds without a heartbeat (twice a second to once in some seconds, by the size of the cluster)."""
+SCHEDULERS_SILENCE = 60.0
+"""Seconds without an answer of the scheduler, whose connection stays open where it was stopped."""
+_ANSWER = SILENCE + 10.0
+"""Seconds that it has for one answer."""
 _LOOKING = 5.0
 """Seconds between two looks."""
 
@@ -59,16 +63,19 @@ class Standstill:
 
 
 @contextmanager
-def watched(client: Any, longest: float, tell: Callable[[str], object]) -> Iterator[None]:
+def watched(
+    client: Any, longest: float, tell: Callable[[str], object], give_up: Callable[[str], object]
+) -> Iterator[None]:
     """Have workers that stand still removed from a cluster as long as it lasts (a nanny starts them anew).
 
     Args:
         client: of the cluster.
         longest: seconds that a run can take at most.
         tell: is told of each in a line.
+        give_up: is told where the scheduler itself stands still.
     """
     over = threading.Event()
-    watch = threading.Thread(target=_watch, args=(client, Standstill(longest), tell, over), daemon=True)
+    watch = threading.Thread(target=_watch, args=(client, Standstill(longest), tell, give_up, over), daemon=True)
     watch.start()
     try:
         yield
@@ -77,14 +84,27 @@ def watched(client: Any, longest: float, tell: Callable[[str], object]) -> Itera
         watch.join(timeout=5)
 
 
-def _watch(client: Any, standstill: Standstill, tell: Callable[[str], object], over: threading.Event) -> None:
+def _watch(
+    client: Any,
+    standstill: Standstill,
+    tell: Callable[[str], object],
+    give_up: Callable[[str], object],
+    over: threading.Event,
+) -> None:
+    answered = monotonic()
     while not over.wait(_LOOKING):
+        if monotonic() - answered > SCHEDULERS_SILENCE:
+            give_up(f"the scheduler stands still: no answer of it for {SCHEDULERS_SILENCE:.0f} s")
+            return
         try:
-            workers = client.scheduler_info(n_workers=-1)["workers"]
+            workers = _asked(client, client.scheduler.identity, n_workers=-1)["workers"]
+            at_work = _asked(client, client.scheduler.processing, workers=None)
+            answered = monotonic()
             heartbeats = {worker: state["last_seen"] for worker, state in workers.items()}
-            for worker, why in standstill.look(monotonic(), heartbeats, client.processing()).items():
+            for worker, why in standstill.look(answered, heartbeats, at_work).items():
                 tell(f"worker {worker} stands still ({why}): its runs go to others")
-                client.sync(
+                _asked(
+                    client,
                     client.scheduler.restart_workers,
                     workers=[worker],
                     timeout=SILENCE,
@@ -94,3 +114,12 @@ def _watch(client: Any, standstill: Standstill, tell: Callable[[str], object], o
                 )
         except Exception as error:  # the scheduler is gone, or does not answer now: the sweep itself hears of that
             logging.getLogger(__name__).debug("no look at the workers: %s", error)
+
+
+def _asked(client: Any, question: Callable[..., Any], **named: Any) -> Any:
+    """Return the scheduler's answer.
+
+    Raises:
+        TimeoutError: where there is none in time.
+    """
+    return client.sync(question, callback_timeout=_ANSWER, **named)

@@ -8,12 +8,12 @@ recorded once.
 from __future__ import annotations
 
 import queue
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Hashable, Iterable
 from concurrent.futures import Executor, Future
 from datetime import UTC, datetime
 from functools import partial
 from threading import Event
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 from smash.experiments.environment import commit, load, machine, versions
 from smash.experiments.isolation.job import Job, Report
@@ -22,11 +22,23 @@ from smash.experiments.weighing import run_job
 from smash.problem.errors import Interrupted, SmashError, Unsupported
 from smash.problem.files.instances import instance_document
 from smash.problem.plan import Plan
+from smash.records.files import R
+from smash.records.record import Record
 from smash.records.runs import RUN_FORMAT, RunRecord, VerdictField, instance_hash, plan_fields
 from smash.records.writing import Writer
 
-_Future = Future[RunRecord | None]
-_Ended = queue.SimpleQueue[_Future]
+
+class Wanted(Protocol):
+    """What a sweep does: it has the key of the record that it becomes."""
+
+    @property
+    def key(self) -> Hashable:
+        """The key."""
+
+
+W = TypeVar("W", bound=Wanted)
+_Wanted = TypeVar("_Wanted", bound=Wanted, contravariant=True)
+_Made = TypeVar("_Made", bound=Record, contravariant=True)
 
 
 class WorkersLost(SmashError):
@@ -35,14 +47,18 @@ class WorkersLost(SmashError):
     exit_code = 7
 
 
-class Display(Protocol):
+class Display(Protocol[_Wanted, _Made]):
     """Whoever shows how a sweep goes."""
+
+    def ended(self, run: _Wanted, record: _Made, /) -> None:
+        """A run has ended and is recorded."""
+
+
+class RunDisplay(Display[Run, RunRecord], Protocol):
+    """Whoever is told, too, when a run starts."""
 
     def begun(self, run: Run) -> None:
         """A run has started."""
-
-    def ended(self, run: Run, record: RunRecord) -> None:
-        """A run has ended and is recorded."""
 
 
 def record_of(run: Run, report: Report, started: datetime, load_before: float) -> RunRecord:
@@ -110,27 +126,35 @@ def execute(run: Run, stop: Event | None = None, begun: Callable[[Run], None] | 
     return None if report.outcome == "interrupted" else record_of(run, report, started, load_before)
 
 
-def local_task(stop: Event, display: Display) -> Callable[[Run], RunRecord | None]:
+def local_task(stop: Event, display: RunDisplay) -> Callable[[Run], RunRecord | None]:
     """Return the task for a pool in this process: it can be stopped, and tells the display when it begins."""
     return partial(execute, stop=stop, begun=display.begun)
 
 
 def sweep(
-    runs: Iterable[Run],
-    records: Writer[RunRecord],
+    runs: Iterable[W],
+    records: Writer[R],
     executor: Executor,
-    task: Callable[[Run], RunRecord | None],
-    display: Display,
+    task: Callable[[W], R | None],
+    display: Display[W, R],
     stop: Event,
 ) -> None:
     """Do all runs that are not recorded yet.
+
+    Args:
+        runs: what is wanted: runs of planners, episodes, trials.
+        records: where each is recorded as it ends.
+        executor: the pool.
+        task: does one; None where it was stopped before its end.
+        display: is told of each.
+        stop: ends the sweep early.
 
     Raises:
         Interrupted: where `stop` was set before the last run had ended.
         WorkersLost: where the executor gave runs up.
     """
-    ended: _Ended = queue.SimpleQueue()
-    waiting: dict[_Future, Run] = {}
+    ended: queue.SimpleQueue[Future[R | None]] = queue.SimpleQueue()
+    waiting: dict[Future[R | None], W] = {}
     try:
         for run in runs:
             if run.key not in records.finished:
@@ -149,7 +173,11 @@ def sweep(
 
 
 def _collect(
-    waiting: dict[_Future, Run], ended: _Ended, records: Writer[RunRecord], display: Display, stop: Event
+    waiting: dict[Future[R | None], W],
+    ended: queue.SimpleQueue[Future[R | None]],
+    records: Writer[R],
+    display: Display[W, R],
+    stop: Event,
 ) -> list[BaseException]:
     """Record each run as it ends; return the errors of those that the executor gave up."""
     lost: list[BaseException] = []
@@ -176,6 +204,6 @@ def _collect(
     return lost
 
 
-def _cancel(waiting: Iterable[_Future]) -> None:
+def _cancel(waiting: Iterable[Future[R | None]]) -> None:
     for future in list(waiting):
         future.cancel()

@@ -183,7 +183,7 @@ class FlowSearch:
         most = self.log.cost if self.log.cost is not None else self._most_in(horizon)
         fits = self.bound.fitting_cost(horizon, most) + 1
         proven = None if result.status == "infeasible" else whole(result.bound)
-        self.log.prove(fits if result.status == "infeasible" else min(fits, proven or 0), "milp")
+        self.log.conclude(fits if result.status == "infeasible" else min(fits, proven or 0), "milp")
 
     def _most_in(self, horizon: int) -> int:
         """Return a cost that no motion of `horizon` steps exceeds."""

@@ -64,7 +64,7 @@ class Cheaper(Generic[Model]):
         if result is not None and best is not None and enough is not None and horizon >= enough:
             least = best if result.status == "infeasible" else whole(result.bound)
             if least is not None:
-                log.prove(min(best, least), f"layered {stage.name} at a horizon of {horizon}")
+                log.conclude(min(best, least), f"layered {stage.name} at a horizon of {horizon}")
         return result
 
     def grow(self, solving: Solving, first: int) -> None:

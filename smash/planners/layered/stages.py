@@ -72,7 +72,7 @@ class ContractedStages:
             result = solving.run(Stage("unbounded buffers", build, decode, horizon, estimate=estimate))
             bound = None if result is None or horizon < sound_layers(self.blocks) else whole(result.bound)
             if bound is not None:
-                log.prove(bound, ORIGIN)
+                log.conclude(bound, ORIGIN)
 
     def why_not_resting(self, _problem: Problem) -> str | None:
         """Take problems whose goal names locations."""

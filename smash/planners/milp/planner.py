@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import ClassVar
 
 from smash.planners.milp.solvers import load_solver
+from smash.planners.milp.tested import TESTED
 from smash.planners.protocol import SOLVERS, MethodPlanner, OnIncumbent, Settings
+from smash.planners.protocol.tested import why_doubted
 from smash.problem.errors import Unsupported
 from smash.problem.plan import Plan
 from smash.problem.problem import Problem
@@ -23,6 +25,10 @@ class MilpPlanner(MethodPlanner):
             MissingExtra: where it is not installed.
         """
         load_solver(settings)
+
+    def why_doubted(self, problem: Problem, settings: Settings) -> str | None:
+        """Doubt what a solver concludes beyond the sums of costs that it was tested with."""
+        return why_doubted(settings.solver, problem.instance, TESTED.get(settings.solver, 0))
 
     def plan(
         self, problem: Problem, settings: Settings, budget: float, on_incumbent: OnIncumbent | None = None

@@ -124,6 +124,7 @@ def _look(first: _First, firsts: Sequence[_First], log: SolveLog, seconds: float
     relay = _Relayed(first, firsts, log)
     worth = None if log.upper is None else log.upper - first.price
     relay.inner = inner = SolveLog(first.rest(), relay, gentle=log.gentle, worth=worth)
+    inner.doubt = log.doubt
     began = perf_counter()
     plan_rest(inner, began + seconds)
     if inner.refuted is not None:

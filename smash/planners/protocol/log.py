@@ -29,6 +29,8 @@ class SolveLog:
         entries: every plan that was better than those before it.
         refusals: what was offered and the law refused.
         details: what only this planner measures.
+        doubt: why what a solver behind the planner concludes is a claim and no proof, None where it is believed.
+        claimed: the best lower bound that is only claimed.
         gentle: whether topples of its plans are softened.
         worth: a plan that costs so much or more helps nobody, None where every plan does.
     """
@@ -63,6 +65,8 @@ class SolveLog:
         self.refuted: str | None = None
         self.refusals: list[str] = []
         self.details: dict[str, Any] = {}
+        self.doubt: str | None = None
+        self.claimed: int | None = None
 
     @property
     def elapsed(self) -> float:
@@ -81,9 +85,13 @@ class SolveLog:
 
     @property
     def settled(self) -> bool:
-        """Whether nothing is left to be found: no plan is better than the best, or of use, or there is none."""
+        """Whether nothing is left to be found: no plan is better than the best, or of use, or there is none.
+
+        A claim settles it, too: who claims it looks no further.
+        """
+        least = max((bound for bound in (self.bound, self.claimed) if bound is not None), default=None)
         upper = self.upper
-        return self.refuted is not None or (upper is not None and self.bound is not None and self.bound >= upper)
+        return self.refuted is not None or (upper is not None and least is not None and least >= upper)
 
     def offer(self, actions: Sequence[Action], origin: str, seconds: float | None = None) -> bool:
         """Take a plan if it is legal and better than the best; report it at once.
@@ -125,6 +133,29 @@ class SolveLog:
         self.bound, self.bound_origin = bound, origin
         if self._report_bound is not None:
             self._report_bound(self.elapsed, bound, origin)
+
+    def conclude(self, bound: int, origin: str) -> None:
+        """Take a lower bound of a solver: proven, or where it is doubted a claim in `details`.
+
+        Args:
+            bound: no plan costs less, it says.
+            origin: what says so.
+        """
+        if self.doubt is None:
+            self.prove(bound, origin)
+        elif bound > (self.bound or 0) and (self.claimed is None or bound > self.claimed):
+            self.claimed = bound
+            self._claim("lower_bound", bound)
+
+    def conclude_none(self, origin: str) -> None:
+        """Take it from a solver that there is no plan: proven, or where it is doubted a claim in `details`."""
+        if self.doubt is None:
+            self.refute(origin)
+        else:
+            self._claim("status", "infeasible")
+
+    def _claim(self, what: str, said: object) -> None:
+        self.details["claimed"] = {**self.details.get("claimed", {}), what: said, "not_believed": self.doubt}
 
     def refute(self, origin: str, reason: str = "") -> None:
         """Take it that there is no plan.

@@ -110,8 +110,13 @@ class MethodPlanner(ProblemPlanner):
         """
         deadline = deadline_of(budget, self.kept_back)
         log = SolveLog(problem, on_incumbent, gentle=self.gentle)
+        log.doubt = self.why_doubted(problem, settings)
         self._solve(log, settings, deadline)
         return log.plan()
+
+    def why_doubted(self, problem: Problem, settings: Settings) -> str | None:
+        """Return why what the solver behind it concludes of a problem is a claim and no proof; None: it is believed."""
+        return None
 
     def _solve(self, log: SolveLog, settings: Settings, deadline: float) -> None:
         problem = log.problem

@@ -63,11 +63,11 @@ class NetworkStages:
         stage: Stage[UnorderedModel] = Stage("flow without order", build, None, share=FLOW_SHARE)
         result = Solving(self.settings, log, until).run(stage)
         if result is not None and result.status == "infeasible":
-            log.refute(ORIGIN)
+            log.conclude_none(ORIGIN)
         elif result is not None:
             bound = whole(result.bound)
             if bound is not None:
-                log.prove(bound, ORIGIN)
+                log.conclude(bound, ORIGIN)
 
     def relaxations(self, _problem: Problem, log: SolveLog, until: float) -> None:
         """Solve the relaxation at a short horizon, for plans, then at one that holds all cheaper ones, for the bound.
@@ -126,7 +126,7 @@ class NetworkStages:
             if result is None:
                 return None
             if result.status == "infeasible":
-                log.prove(best, ORIGIN)
+                log.conclude(best, ORIGIN)
             most = -result.bound if isfinite(result.bound) else None
             self._most_actions[best] = None if most is None else max(1, floor(most + 1e-6))
         return self._most_actions[best]
