@@ -10,9 +10,21 @@ from smash.experiments.dataset.loading import load_dataset
 from smash.experiments.dataset.package import write_dataset
 from smash.experiments.dataset.prompts import prompt_in_pddl, prompt_in_words
 from smash.experiments.dataset.scoring import answer_text, answered_actions, score, summary
-from smash.problem import Law, OnGoal, Pick, Place, PlanOptions, Topple, Unsupported, make_instance, read_instance
+from smash.problem import (
+    Law,
+    OnGoal,
+    Pick,
+    Place,
+    PlanOptions,
+    PositionsGoal,
+    Topple,
+    Unsupported,
+    make_instance,
+    read_instance,
+)
 from smash.problem.certificate import proven_bound
 from smash.problem.errors import MalformedFile
+from smash.problem.files.plans import action_from_list
 from tests.docs.blocks import ROOT
 
 FIGURE_1 = read_instance(ROOT / "examples" / "figure1.json")
@@ -120,6 +132,42 @@ def test_a_prompt_tells_the_rules_that_hold():
     assert "(define (problem" in prompt_in_pddl(FIGURE_1)
     with pytest.raises(Unsupported):
         prompt_in_words(read_instance(ROOT / "examples" / "scoop.json"))
+
+
+def test_a_prompt_says_where_nothing_is_asked_or_there():
+    idle = make_instance({"s1": ["a", "b"]}, OnGoal({}), buffers=1)
+    assert "Goal:\n- nothing is asked\n" in prompt_in_words(idle)
+    empty = make_instance({"s1": []}, {"s1": []})
+    assert "for example []." in prompt_in_words(empty)
+
+
+def test_a_prompt_in_pddl_tells_costs_by_the_chain():
+    pytest.importorskip("smash_baselines.steps")
+    assert "carry-cost" in prompt_in_pddl(read_instance(ROOT / "examples" / "scoop.json"))
+
+
+@pytest.mark.parametrize(
+    ("step", "reason"),
+    [
+        ("fly b01", "no action is called 'fly'"),
+        ("pick b1 b2", "no object is called 'b1'"),
+        ("pick", "an argument is missing"),
+        ("pick-base s01 s01", "'s01' is not what stands at its place"),
+    ],
+)
+def test_a_step_outside_the_encoding_is_named(dataset, step, reason):
+    pytest.importorskip("smash_baselines.steps")
+    judged = score(dataset.problems["multi-4-000/B2/topple"], f"({step})", pddl=True)
+    assert judged.reason == f"step ({step}) does not fit the encoding ({reason})"
+
+
+def test_a_truth_is_no_height():
+    with pytest.raises(MalformedFile, match="is no action"):
+        action_from_list(["topple", "s2", True], "plan")
+    with pytest.raises(MalformedFile, match="is no action"):
+        action_from_list(["lift", "s2", True, "s1"], "plan")
+    with pytest.raises(MalformedFile, match="not allowed"):
+        make_instance({"s1": ["a"]}, PositionsGoal({"a": ("s1", True)}))
 
 
 def test_the_commands_ask_and_score(folder, dataset, tmp_path, capsys):
