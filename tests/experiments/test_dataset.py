@@ -1,15 +1,17 @@
 """The data set: made, described, read back, asked and scored."""
 
 import json
+import re
 
 import pytest
 
 from smash.cli import smash as command
+from smash.experiments.dataset.answers import answered_actions
 from smash.experiments.dataset.entries import paper_entries
 from smash.experiments.dataset.loading import load_dataset
 from smash.experiments.dataset.package import write_dataset
 from smash.experiments.dataset.prompts import prompt_in_pddl, prompt_in_words
-from smash.experiments.dataset.scoring import answer_text, answered_actions, score, summary
+from smash.experiments.dataset.scoring import answer_text, score, summary
 from smash.problem import (
     Law,
     OnGoal,
@@ -67,11 +69,60 @@ def test_the_metadata_is_croissant(folder):
         assert len(list(described.records(records))) == count
 
 
-def test_a_damaged_data_set_is_refused_by_line(folder, tmp_path):
-    for file in folder.iterdir():
-        (tmp_path / file.name).write_bytes(file.read_bytes())
-    (tmp_path / "plans.jsonl").write_text('{"problem": "x"}\n')
-    with pytest.raises(MalformedFile, match=r"plans\.jsonl:1"):
+FIRST = "multi-4-000/B0/topple"
+DAMAGES = {
+    "instances.jsonl": [
+        (r".*", "[]"),
+        (r'"document":".*"', '"document":5'),
+        (r'"document":".*"', '"document":"5"'),
+        (r'"name":"multi-4-000","set"', '"name":["x"],"set"'),
+        (r"(.*)", r"\1\n\1"),
+    ],
+    "plans.jsonl": [
+        (r".*", '{"problem": "x"}'),
+        (r'"problem":"[^"]*"', '"problem":[]'),
+        (r'"problem":"[^"]*"', '"problem":"elsewhere"'),
+        (r'"actions":".*"', '"actions":"5"'),
+        (r'"actions":".*"', '"actions":"[5]"'),
+        (r'"actions":".*"', r'"actions":"[[\\"topple\\",\\"s1\\",true]]"'),
+        (r'"actions":".*"', '"actions":"[[' + "9" * 5000 + ']]"'),
+        (r'"actions":".*"', '"actions":[]'),
+        (r"(.*)", r"\1\n\1"),
+    ],
+    "certificates.jsonl": [
+        (r'"certificate":".*"', '"certificate":"5"'),
+        (r'"bound":\d+', '"bound":"5"'),
+        (r"(.*)", r"\1\n\1"),
+    ],
+    "problems.csv": [
+        (FIRST, "elsewhere"),
+        (r"multi-4-000,4,", "elsewhere,4,"),
+        (r"multi-4-000,4,", "multi-4-000,5,"),
+        (r",0,(\w+),topple,", r",99999999,\1,topple,"),
+        (r",0,(\w+),topple,", r",,\1,topple,"),
+        (r",0,(\w+),topple,", r",0,\1,nonsense,"),
+        (r",optimal,", ",open,"),
+        (r",optimal,\d+,", ",optimal," + "9" * 5000 + ","),
+        (r",optimal,\d+,", ",optimal,,"),
+        (r",multi-4,", f",{'m' * 140_000},"),
+        (r",optimal,.*", ""),
+        (r"$", ",more"),
+        (rf"({FIRST}.*)", r"\1\n\1"),
+    ],
+}
+
+
+@pytest.mark.parametrize(("file", "damage"), [(file, damage) for file, listed in DAMAGES.items() for damage in listed])
+def test_a_damaged_data_set_is_refused_by_line(folder, tmp_path, file, damage):
+    for whole in folder.iterdir():
+        (tmp_path / whole.name).write_bytes(whole.read_bytes())
+    head, first, *others = ("\n" + (folder / file).read_text()).split("\n")
+    if file == "problems.csv":
+        head, first, *others = first, *others
+    damaged = re.sub(damage[0], damage[1], first, count=1)
+    assert damaged != first
+    (tmp_path / file).write_text("\n".join([*filter(None, [head]), damaged, *others]))
+    with pytest.raises(MalformedFile, match=rf"^\S*({file}|problems\.csv):[123]: [^\n]*$"):
         load_dataset(tmp_path)
 
 
@@ -82,10 +133,49 @@ def test_a_damaged_data_set_is_refused_by_line(folder, tmp_path):
         "```json\n[[1]]\n```\nno, rather\n" + answer_text([Topple("s1", 2), Pick("b1", "s1"), Place("b1", "s3")]),
         "1. topple(s1, 2)\n2. pick b1 s1\n3. Place b1 s3",
         "- (topple s1 2)\n- (pick b1 s1)\n- (place b1 s3)",
+        "**1.** **topple** s1 2\n**2.** `pick` `b1` from `s1`\n3) place b1 -> s3.",
+        "Now s1: [], s3: []\n* topple s1 at height 2\n* pick b1 from s1\n* place b1 on s3",
+        '1: ["topple", "s1", 2]\n2: ["pick", "b1", "s1"]\n3: ["place", "b1", "s3"]',
+        '[["topple","s1",2],["pick","b1","s1"],["place","b1","s3"]]\nThen: [["b1"],["b2","b3"]] and [].',
+        "[['topple', 's1', 2], ['pick', 'b1', 's1'], ['place', 'b1', 's3']]",
+        '{"plan": [[["topple", "s1", 2], ["pick", "b1", "s1"], ["place", "b1", "s3"]]]}',
     ],
 )
 def test_a_plan_is_found_in_what_a_model_says(answer):
     assert answered_actions(answer) == (Topple("s1", 2), Pick("b1", "s1"), Place("b1", "s3"))
+
+
+def test_an_empty_list_is_a_plan_where_nothing_else_is_there():
+    assert answered_actions("Nothing is to be done: []") == ()
+    with pytest.raises(MalformedFile, match="is no action"):
+        answered_actions('[["b1"], ["b2"]]')
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        *(piece * 100_000 for piece in ("[", "[[", "[ ", '["a",', '[["a"],', '"', "\n", "* ", "1. ", "(", "()\n")),
+        "[[" + '"a",' * 100_000,
+        "pick " + "the " * 100_000 + "(",
+        "topple s2 " + "9" * 5_000,
+        f'[["topple", "s2", {"9" * 5_000}]]',
+        '[["topple", "s2", 01]]',
+        '[["topple", "s2", 1.0]]',
+        f"[['topple', 's2', {'9' * 5_000}]]",
+        '[["topple", "s\\q", 1]]',
+        '[["topple", "\\ud800", 1]]',
+        "topple \ud800 1",
+        "(topple \ud800)",
+    ],
+    ids=lambda answer: ascii(answer[:12]),
+)
+@pytest.mark.parametrize("pddl", [False, True])
+def test_a_bad_answer_is_a_bad_answer(dataset, answer, pddl):
+    if pddl:
+        pytest.importorskip("smash_baselines.steps")
+    judged = score(dataset.problems["multi-4-000/B12/topple"], answer, pddl=pddl)
+    assert not judged.legal
+    assert judged.reason.encode()
 
 
 def test_answers_are_scored_by_legality_and_gap(dataset):
@@ -177,6 +267,21 @@ def test_the_commands_ask_and_score(folder, dataset, tmp_path, capsys):
     command.main(["score", str(folder), str(answers), "--out", str(tmp_path / "s.jsonl")], standalone_mode=False)
     assert "optimal: 1 of 1" in capsys.readouterr().out
     assert json.loads((tmp_path / "s.jsonl").read_text())["gap"] == 0
-    answers.write_text('{"problem": "nowhere", "answer": ""}\n')
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        '{"problem": "nowhere", "answer": ""}',
+        '{"problem": ["x"], "answer": ""}',
+        '{"problem": {}, "answer": ""}',
+        '{"problem": "multi-4-000/B0/topple", "answer": 5}',
+        '{"problem": "multi-4-000/B0/topple", "answer": "", "form": []}',
+        "[]",
+    ],
+)
+def test_a_line_that_is_no_answer_is_refused(folder, tmp_path, line):
+    answers = tmp_path / "answers.jsonl"
+    answers.write_text(line + "\n")
     with pytest.raises(MalformedFile, match=r"answers\.jsonl:1"):
         command.main(["score", str(folder), str(answers)], standalone_mode=False)
