@@ -1,11 +1,13 @@
 """The data set: made, described, read back, asked and scored."""
 
+import csv
 import json
 import re
 
 import pytest
 
 from smash.cli import smash as command
+from smash.experiments.best_known.files import LIST
 from smash.experiments.dataset.answers import answered_actions
 from smash.experiments.dataset.entries import paper_entries
 from smash.experiments.dataset.loading import load_dataset
@@ -27,6 +29,7 @@ from smash.problem import (
 from smash.problem.certificate import proven_bound
 from smash.problem.errors import MalformedFile
 from smash.problem.files.plans import action_from_list
+from smash.problem.sets.open_instances import FAMILIES
 from tests.docs.blocks import ROOT
 
 FIGURE_1 = read_instance(ROOT / "examples" / "figure1.json")
@@ -285,3 +288,20 @@ def test_a_line_that_is_no_answer_is_refused(folder, tmp_path, line):
     answers.write_text(line + "\n")
     with pytest.raises(MalformedFile, match=r"answers\.jsonl:1"):
         command.main(["score", str(folder), str(answers)], standalone_mode=False)
+
+
+def test_the_committed_data_set_says_what_the_list_of_best_known_plans_says():
+    known = _rows(LIST / "best-known.csv")
+    for row in known:
+        row["status"] = "optimal" if row["proven"] == "yes" else "open"
+    said = [row for row in _rows(ROOT / "results" / "dataset" / "problems.csv") if row["set"] in FAMILIES]
+    differing = {row[:2] for row in _standings(known) ^ _standings(said)}
+    assert not differing, f"{len(differing)} problems of results/dataset are older than the list: `make dataset`"
+
+
+def _rows(path):
+    return list(csv.DictReader(path.read_text().splitlines()))
+
+
+def _standings(rows):
+    return {tuple(row[name] for name in ("instance", "variant", "status", "cost", "lower_bound")) for row in rows}
