@@ -140,6 +140,8 @@ def test_a_damaged_data_set_is_refused_by_line(folder, tmp_path, file, damage):
         "Now s1: [], s3: []\n* topple s1 at height 2\n* pick b1 from s1\n* place b1 on s3",
         '1: ["topple", "s1", 2]\n2: ["pick", "b1", "s1"]\n3: ["place", "b1", "s3"]',
         '[["topple","s1",2],["pick","b1","s1"],["place","b1","s3"]]\nThen: [["b1"],["b2","b3"]] and [].',
+        "topple s1 from height 2\npick b1 from s1, and then place b1->s3; done.",
+        "topple(s1, 2), pick(b1, s1), place(b1, s3)",
         "[['topple', 's1', 2], ['pick', 'b1', 's1'], ['place', 'b1', 's3']]",
         '{"plan": [[["topple", "s1", 2], ["pick", "b1", "s1"], ["place", "b1", "s3"]]]}',
     ],

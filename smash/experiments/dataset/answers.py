@@ -28,11 +28,13 @@ _BREAK = r"""[\s,()\[\]"'`*]"""
 _WORD = r"""[^\s,()\[\]"'`*]"""
 _BETWEEN = rf"(?:(?:from|off|on|onto|to|into|at|height|->|=>|→){_BREAK}++)*"
 WORDS = re.compile(
-    rf"[\W_]*+(?:\d++[.):]*+[\W_]*+)?+(?P<name>{'|'.join(NAMES)}){_BREAK}++(?P<first>{_WORD}++){_BREAK}++"
-    rf"{_BETWEEN}(?P<second>{_WORD}++)",
+    rf"[\W_]*+(?:\d++[.):]*+[\W_]*+)?+(?:(?:and|then)[\W_]++)*+(?P<name>{'|'.join(NAMES)}){_BREAK}++"
+    rf"(?P<first>{_WORD}++){_BREAK}++{_BETWEEN}(?P<second>{_WORD}++)",
     re.IGNORECASE,
 )
-"""An action in words, on a line of its own: its name and two arguments, whatever signs stand around them."""
+"""An action in words: its name and two arguments, whatever signs stand around them."""
+
+ARROW = re.compile(r"[-=]>|→")
 
 STEP = re.compile(r"[^\w(]*+(?:\d[\d.):]*+[^\w(]*+)?+\(([^()]++)\)")
 """A step of a plan in PDDL, on a line of its own."""
@@ -85,10 +87,19 @@ def _is_action(entry: list[Any]) -> bool:
 
 
 def _in_words(text: str) -> Iterator[list[Any]]:
-    for match in filter(None, map(WORDS.match, text.splitlines())):
+    for match in _in_lines(ARROW.sub(r" \g<0> ", text)):
         first, second = (match[part].rstrip(".,;:") or match[part] for part in ("first", "second"))
         name = match["name"].lower()
         yield [name, first, _number(second) if name == "topple" and second.isdecimal() else second]
+
+
+def _in_lines(text: str) -> Iterator[re.Match[str]]:
+    """Yield the actions in words with which lines begin, and those that follow each directly."""
+    for line in text.splitlines():
+        at = 0
+        while match := WORDS.match(line, at):
+            yield match
+            at = match.end()
 
 
 def _number(text: str) -> int | str:
