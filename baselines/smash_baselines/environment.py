@@ -36,6 +36,7 @@ from smash.problem import (
     Topple,
     Unsupported,
 )
+from smash.problem.arguments import whole_number
 
 NAME = "smash/StackRearrangement-v0"
 Observation = dict[str, Any]
@@ -125,19 +126,29 @@ class StackRearrangement(gymnasium.Env[Observation, np.int64]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begin an episode; `options={"instance": number}` chooses the instance, else it is drawn."""
+        """Begin an episode; `options={"instance": number}` chooses the instance, from 0, else it is drawn.
+
+        Raises:
+            SmashError: where no instance has that number.
+        """
         super().reset(seed=seed)
         chosen = (options or {}).get("instance")
-        number = int(self.np_random.integers(len(self._instances))) if chosen is None else int(chosen)
+        if chosen is None:
+            chosen = self.np_random.integers(len(self._instances))
+        given = int(chosen) if isinstance(chosen, np.integer) else chosen
+        number = whole_number("options['instance']", given, 0, len(self._instances) - 1)
         self._begin(self._instances[number])
         return self._observation(), self._info()
 
     def step(self, action: np.int64) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """Carry out an action; the reward is minus its cost."""
-        asked = self.action_of(int(action))
-        refused = self.law.refusal(self.state, asked) if asked is not None else "no such block there"
+        """Carry out an action; the reward is minus its cost. What is no action's number is an illegal action."""
+        known = self.action_space.contains(action)
+        asked = self.action_of(int(action)) if known else None
+        refused: str | None = "no such block there" if known else "no such action"
+        if asked is not None:
+            refused = self.law.refusal(self.state, asked)
         cost = 1
-        if refused is None and asked is not None:
+        if asked is not None and refused is None:
             cost = self.law.cost(self.state, asked)
             self.law.carry_out(self.state, asked)
         self._steps += 1
@@ -146,7 +157,9 @@ class StackRearrangement(gymnasium.Env[Observation, np.int64]):
         return self._observation(), -float(cost), reached, self._steps >= self._limit and not reached, info
 
     def action_of(self, number: int) -> Action | None:
-        """Return the law's action of a number in the present state, or None where it names no block."""
+        """Return the law's action of a number in the present state, or None where it names no block or no action."""
+        if not self.action_space.contains(number):
+            return None
         locations, blocks = self._shape
         if number < locations:
             location = self.instance.locations[number]

@@ -9,12 +9,16 @@ from smash.problem.actions.topple import Topple
 from smash.problem.errors import IllegalAction
 from smash.problem.model import TABLE, Action, Pick, Place, State
 from smash.problem.rules import Law
+from smash_baselines.encodings import action_names
 from smash_baselines.goal_words import JUDGED
 from smash_baselines.judging import judging_steps
 from smash_baselines.names import Step
 from smash_baselines.parts.layout import Layout
 from smash_baselines.parts.part import Part, Telling, step_names
 from smash_baselines.task import PddlTask
+
+REGIONS = ("stacks", "buffers")
+"""The constants of the chain domains."""
 
 
 def parse_step(line: str) -> Step:
@@ -42,15 +46,36 @@ class _Decoder(ABC):
 
     def run(self, steps: Iterable[Step]) -> Iterator[Action]:
         for step in steps:
-            if self._task.encoding.judged and step[0] in JUDGED:
+            if self._task.encoding.judged and step[:1] and step[0] in JUDGED:
                 continue
             try:
                 action = self._action(step)
             except (KeyError, IndexError, ValueError, StopIteration) as error:
-                raise IllegalAction(f"step ({' '.join(step)}) does not fit the encoding ({error!r})") from None
+                raise IllegalAction(
+                    f"step ({' '.join(step)}) does not fit the encoding ({self._why(step, error)})"
+                ) from None
             if action is not None:
                 self._follow(action)
                 yield action
+
+    def _why(self, step: Step, error: Exception) -> str:
+        """Return what is wrong with a step at which an error came: an unknown name first."""
+        if not step or step[0] not in action_names(self._task.domain_text):
+            return f"no action is called {step[0]!r}" if step else "it is empty"
+        known = {name for names in self._task.facts.objects.values() for name in names}
+        unknown = [name for name in step[1:] if name not in known and name not in REGIONS]
+        if unknown:
+            return f"no object is called {unknown[0]!r}"
+        match error:
+            case IndexError():
+                return "an argument is missing"
+            case StopIteration():
+                return "no buffer is empty"
+            case KeyError() if error.args[0] in self._task.instance.blocks:
+                return f"{self._task.names.blocks[error.args[0]]} is in no pile"
+            case KeyError():
+                return f"{error.args[0]!r} is not what stands at its place"
+        return str(error)
 
     @abstractmethod
     def _action(self, step: Step) -> Action | None:
@@ -116,7 +141,10 @@ class _ToppleDecoder(_Decoder):
 
     def _topple(self, lowest: str) -> Topple:
         location = self._where[lowest]
-        return Topple(location, self._state.piles[location].index(lowest) + 1)
+        pile = self._state.piles[location]
+        if lowest not in pile:
+            raise ValueError(f"{self._task.names.blocks[lowest]} is in no pile")
+        return Topple(location, pile.index(lowest) + 1)
 
     def _follow(self, action: Action) -> None:
         super()._follow(action)

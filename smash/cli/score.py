@@ -5,11 +5,21 @@ from __future__ import annotations
 import json
 from dataclasses import asdict
 from pathlib import Path
+from typing import Literal
 
 import click
+import msgspec
 
 from smash.problem.errors import MalformedFile
-from smash.problem.files.documents import parse_json, read_bytes, write_text
+from smash.problem.files.documents import convert, parse_json, read_bytes, write_text
+
+
+class Answer(msgspec.Struct):
+    """A line of ANSWERS; further keys may say whose answer it is."""
+
+    problem: str
+    answer: str
+    form: Literal["words", "pddl"] = "words"
 
 
 @click.command("score")
@@ -36,12 +46,10 @@ def command(dataset: Path, answers: Path, out: Path | None) -> None:
     scores = []
     for number, line in enumerate(read_bytes(answers).splitlines(), start=1):
         where = f"{answers}:{number}"
-        given = parse_json(line, where)
-        if not isinstance(given, dict) or not isinstance(given.get("answer"), str):
-            raise MalformedFile(where, 'no object with "problem" and "answer", both texts')
-        if given.get("problem") not in known:
-            raise MalformedFile(where, f"`problem`: {given.get('problem')!r} is not in {dataset}")
-        scores.append(score(known[given["problem"]], given["answer"], pddl=given.get("form") == "pddl"))
+        given = convert(parse_json(line, where), Answer, where)
+        if given.problem not in known:
+            raise MalformedFile(where, f"`problem`: {given.problem!r} is not in {dataset}")
+        scores.append(score(known[given.problem], given.answer, pddl=given.form == "pddl"))
     if out is not None:
         lines = (json.dumps({**asdict(one), "gap": one.gap}, ensure_ascii=False) + "\n" for one in scores)
         write_text(out, "".join(lines))

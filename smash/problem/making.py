@@ -148,7 +148,7 @@ def _goal(goal: Any, where: str) -> Goal:
 
 def _position(block: str, position: Any, where: str) -> tuple[str, int]:
     match position:
-        case (str(location), int(height)):
+        case (str(location), int(height)) if not isinstance(height, bool):
             return location, height
     raise MalformedFile(where, f"`goal.positions.{block}`: {position!r} is not allowed; (location, height) is")
 

@@ -2,6 +2,7 @@
 
 import warnings
 
+import numpy
 import pytest
 
 gymnasium = pytest.importorskip("gymnasium")
@@ -61,6 +62,24 @@ def test_an_illegal_action_costs_and_changes_nothing():
     _, reward, ended, cut, info = env.step(number)
     assert (reward, ended, cut, env.state.key()) == (-1.0, False, False, before)
     assert info["refused"]
+
+
+@pytest.mark.parametrize("number", [-1, 999, 1.5, "0", None, numpy.array([0])])
+def test_what_is_no_number_of_an_action_is_an_illegal_action(number):
+    env = StackRearrangement(instance(GOALS["stacks"]))
+    env.reset()
+    before = env.state.key()
+    _, reward, ended, cut, info = env.step(number)
+    assert (reward, ended, cut, env.state.key()) == (-1.0, False, False, before)
+    assert info["refused"] == "no such action"
+    assert env.action_of(number) is None
+
+
+@pytest.mark.parametrize("number", [-1, 1, 0.0, "0", True])
+def test_a_reset_to_no_instance_is_refused_in_a_line(number):
+    env = StackRearrangement(instance(GOALS["stacks"]))
+    with pytest.raises(smash.SmashError, match=r"options\['instance'\]: .* is not allowed; whole numbers, 0 to 0$"):
+        env.reset(options={"instance": number})
 
 
 def test_a_reset_draws_an_instance_or_takes_the_one_asked_for():

@@ -60,7 +60,7 @@ def write_dataset(entries: Iterable[Entry], out: Path, said: Callable[[str], Non
                     certificate=_json(msgspec.to_builtins(certificate)),
                 )
         proven = named in proofs and f'"bound":{entry.cost},' in proofs[named]
-        rows.append(_row(entry, named if proven else ""))
+        rows.append(row_of(entry, named if proven else ""))
         name, document = entry.instance.name, _json(instance_document(entry.instance))
         instances[name] = max(
             instances.get(name, ""), _line(name=name, set=entry.set, document=document), key=len
@@ -92,7 +92,8 @@ def _json(document: Any) -> str:
     return json.dumps(document, ensure_ascii=False, separators=(",", ":"))
 
 
-def _row(entry: Entry, certificate: str) -> dict[str, Any]:
+def row_of(entry: Entry, certificate: str) -> dict[str, Any]:
+    """Return the row of a problem in the table, by column, with the name of its certificate."""
     cells = (
         *(entry.name, entry.set, entry.instance.name, len(entry.instance.blocks), len(entry.instance.stacks)),
         *(len(entry.instance.buffers), entry.goal, entry.variant),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from smash.problem.errors import Unsupported
 from smash.problem.model import Instance, OnGoal, PlanOptions, PositionsGoal, StacksGoal, no_goal
+from smash.problem.problem import Problem
 
 if TYPE_CHECKING:
     from smash_baselines.task import PddlTask
@@ -37,10 +38,8 @@ def prompt_in_words(instance: Instance, options: PlanOptions | None = None) -> s
         TOPPLE.read_text(encoding="utf-8").format(cap=cap, stacks=_listed(instance.stacks)) if options.topple else ""
     )
     rules = RULES.read_text(encoding="utf-8").format(places=_listed(instance.locations), region=region, topple=topple)
-    place = json.dumps(instance.stacks[0], ensure_ascii=False)
-    block = json.dumps(instance.blocks[0], ensure_ascii=False)
-    example = f'["pick", {block}, {place}], ["place", {block}, {place}]'
-    parts = [rules, "Start:", *_start(instance), "Goal:", *_goal(instance), "", ANSWER.format(example=example)]
+    goal = list(_goal(instance)) or ["- nothing is asked"]
+    parts = [rules, "Start:", *_start(instance), "Goal:", *goal, "", ANSWER.format(example=_example(instance))]
     return "\n".join(parts) + "\n"
 
 
@@ -61,14 +60,24 @@ def prompt_in_pddl(instance: Instance, options: PlanOptions | None = None) -> st
 
 
 def pddl_task(instance: Instance, options: PlanOptions) -> PddlTask:
-    """Return a problem in the encoding that a prompt in PDDL tells it in: topple as one action, where no cap forbids.
+    """Return a problem in the encoding of a prompt in PDDL: topple is one action; a chain with caps or costs.
 
     Raises:
         SmashError: where the encoding does not take it.
     """
+    from smash_baselines.encodings import COMPOSED
     from smash_baselines.task import compile_instance
 
-    return compile_instance(instance, options, "chain" if options.max_topple is not None else "conditional")
+    chain = options.max_topple is not None or not Problem(instance, options).plain
+    return compile_instance(instance, options, COMPOSED if chain else "conditional")
+
+
+def _example(instance: Instance) -> str:
+    """Return a pick and a place for an answer; none where there are no blocks or places."""
+    if not instance.blocks or not instance.locations:
+        return ""
+    block, place = _name(instance.blocks[0]), _name(instance.locations[0])
+    return f'["pick", {block}, {place}], ["place", {block}, {place}]'
 
 
 def _start(instance: Instance) -> Iterator[str]:
@@ -91,7 +100,8 @@ def _goal(instance: Instance) -> Iterator[str]:
         case PositionsGoal() as goal:
             for block, (location, height) in goal.positions.items():
                 yield f"- {_name(block)} is at height {height} of {_name(location)}"
-            yield "- all other blocks may be anywhere, in the table region too"
+            if goal.positions:
+                yield "- all other blocks may be anywhere, in the table region too"
         case OnGoal() as goal:
             yield from (f"- {_name(upper)} lies directly on {_name(under)}" for upper, under in goal.on.items())
             yield from (f"- {_name(block)} is the lowest block of some place" for block in goal.bottom)

@@ -3,26 +3,16 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
+from smash.experiments.dataset.answers import answered_actions, answered_steps
 from smash.experiments.dataset.entries import Entry
 from smash.experiments.dataset.prompts import pddl_task
 from smash.problem.errors import IllegalAction, MalformedFile
-from smash.problem.files.plans import action_from_list, action_list
+from smash.problem.files.plans import action_list
 from smash.problem.model import Action
 from smash.problem.rules import Law
-
-WORDS = re.compile(
-    r"""^\W*(?:\d+[.):]\s*)?\W*(?P<name>pick|place|topple)[\s,("']+(?P<first>[^\s,()"']+)[\s,"']+(?P<second>[^\s,()"']+)""",
-    re.IGNORECASE | re.MULTILINE,
-)
-"""An action in words: its name and two arguments, whatever signs stand around them."""
-
-STEP = re.compile(r"^\W*(?:\d+[.):]?\s*)?\(\s*([^()\n]+?)\s*\)", re.MULTILINE)
-"""A step of a plan in PDDL, on a line of its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,53 +43,11 @@ class Score:
         return self.cost / self.reference - 1
 
 
-def answered_actions(text: str) -> tuple[Action, ...]:
-    """Return the plan in an answer: the last JSON list of actions in it, else its lines that name actions.
-
-    Raises:
-        MalformedFile: where there is no plan, or an action is none.
-    """
-    listed = _last_list(text)
-    if listed is None:
-        listed = [_action_in_words(match) for match in WORDS.finditer(text)]
-        if not listed:
-            raise MalformedFile("answer", "holds no plan: neither a JSON list of actions nor lines that name them")
-    return tuple(action_from_list(entry, f"answer, action {number}") for number, entry in enumerate(listed, 1))
-
-
-def _last_list(text: str) -> list[Any] | None:
-    """Return the last JSON list of lists in a text; an empty list counts where nothing else is there."""
-    decoder, found, at = json.JSONDecoder(), None, 0
-    while (at := text.find("[", at)) != -1:
-        try:
-            value, end = decoder.raw_decode(text, at)
-        except (ValueError, RecursionError):
-            at += 1
-            continue
-        if all(isinstance(entry, list) for entry in value) and (value or found is None):
-            found = value
-        at = end
-    return found
-
-
-def _action_in_words(match: re.Match[str]) -> list[Any]:
-    name, second = match["name"].lower(), match["second"]
-    return [name, match["first"], int(second) if name == "topple" and second.isdecimal() else second]
-
-
-def answered_steps(entry: Entry, text: str) -> tuple[Action, ...]:
-    """Return the plan in an answer to a prompt in PDDL: its lines `(name argument ...)`.
-
-    Raises:
-        MalformedFile: where there is no plan.
-        IllegalAction: at a step that the encoding has not, or that cannot be done.
-    """
+def _steps_done(entry: Entry, text: str) -> tuple[Action, ...]:
+    """Return the actions of the steps in an answer to a prompt in PDDL."""
     from smash_baselines.steps import actions_of
 
-    steps = [tuple(match[1].lower().split()) for match in STEP.finditer(text)]
-    if not steps:
-        raise MalformedFile("answer", "holds no plan: no line (name argument ...)")
-    return tuple(actions_of(steps, pddl_task(entry.instance, entry.options)))
+    return tuple(actions_of(answered_steps(text), pddl_task(entry.instance, entry.options)))
 
 
 def score(entry: Entry, answer: str | Sequence[Action], *, pddl: bool = False) -> Score:
@@ -113,7 +61,8 @@ def score(entry: Entry, answer: str | Sequence[Action], *, pddl: bool = False) -
     proven = entry.status == "optimal"
     try:
         if isinstance(answer, str):
-            actions = answered_steps(entry, answer) if pddl else answered_actions(answer)
+            text = answer.encode(errors="replace").decode()  # halves of surrogate pairs, which no file can hold
+            actions = _steps_done(entry, text) if pddl else answered_actions(text)
         else:
             actions = tuple(answer)
     except (IllegalAction, MalformedFile) as error:

@@ -78,7 +78,7 @@ class LiftKind(AggregatingKind[Lift]):
     def read(self, entry: list[Any]) -> Lift | None:
         """Return the lift of `["lift", source, height, target]`."""
         match entry:
-            case [_, str(source), int(height), str(target)]:
+            case [_, str(source), int(height), str(target)] if not isinstance(height, bool):
                 return Lift(source, height, target)
         return None
 

@@ -72,7 +72,7 @@ class ToppleKind(AggregatingKind[Topple]):
     def read(self, entry: list[Any]) -> Topple | None:
         """Return the topple of `["topple", location, height]`."""
         match entry:
-            case [_, str(location), int(height)]:
+            case [_, str(location), int(height)] if not isinstance(height, bool):
                 return Topple(location, height)
         return None
 
