@@ -55,15 +55,15 @@ class ClusterExecutor(Executor):
         self._anywhere = client.get_executor(pure=False)
         self._tell = tell
         self._told: set[str] = set()
-        self._waiting: set[Future[Any]] = set()
+        self._waiting: dict[Future[Any], Future[Any] | None] = {}  # what is promised -> what Dask is asked for it
         self._lock = Lock()
 
     def submit(self, task: Callable[..., Any], /, *arguments: Any, **named: Any) -> Future[Any]:
         """Hand out one run."""
         promise: Future[Any] = Future()
         with self._lock:
-            self._waiting.add(promise)
-        promise.add_done_callback(self._waiting.discard)
+            self._waiting[promise] = None
+        promise.add_done_callback(self._let_go)
         do = partial(on_worker, partial(task, **named), *arguments)
         self._hand_out(promise, self._anywhere, do, frozenset())
         return promise
@@ -80,8 +80,19 @@ class ClusterExecutor(Executor):
         self, promise: Future[Any], executor: Executor, do: Callable[[], Any], unable: frozenset[str]
     ) -> None:
         handed = executor.submit(do)
-        promise.add_done_callback(lambda promise: handed.cancel() if promise.cancelled() else None)
+        with self._lock:
+            if promise in self._waiting:
+                self._waiting[promise] = handed
+        if promise.cancelled():
+            handed.cancel()
         handed.add_done_callback(lambda handed: self._ended(promise, do, unable, handed))
+
+    def _let_go(self, promise: Future[Any]) -> None:
+        """Keep nothing of what has ended: a result that somebody holds is made again where its worker dies."""
+        with self._lock:
+            handed = self._waiting.pop(promise, None)
+        if handed is not None and promise.cancelled():
+            handed.cancel()
 
     def _hand_out_again(self, promise: Future[Any], do: Callable[[], Any], unable: frozenset[str], reason: str) -> None:
         """Let any worker do it but those that are unable."""
