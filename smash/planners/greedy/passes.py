@@ -134,10 +134,10 @@ class _Passes:
             made = self._construct((), 0.0, max(latest, began) + GRACE)
             if made is None:
                 return
+            self._learn(made, made.steps)  # before it is told: whoever stops there goes on from it
             if len(made.steps) > LONG:
                 yield made.steps
-            self._keep(made, latest)
-            if self.best != made.steps or len(made.steps) <= LONG:
+            if self._keep(made, latest) or len(made.steps) <= LONG:
                 yield self.best
             # With the time that the plan's taker needs to judge and report it.
             self._longest = perf_counter() - began
@@ -192,10 +192,13 @@ class _Passes:
         steps = shorten(made.steps, shorten_until)
         if self.best and cost_of(steps) >= cost_of(self.best):
             return False
+        self._learn(made, steps)
+        return True
+
+    def _learn(self, made: Construction, steps: list[Step]) -> None:
         self.best = steps
         self.due = made.finished_at
         self.toppled = made.toppled
-        return True
 
     def _heights(self) -> list[float]:
         """Return the first guess of when each block is due: its height in the target."""
