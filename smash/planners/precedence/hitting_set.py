@@ -244,7 +244,7 @@ class HittingSetSolver:
             self._raise_bound(fewest * self._unit, MAXSAT)
             return not self._proven()
 
-        solver = MaxSat(turns, rows, tell)
+        solver = MaxSat(turns, rows, deadline, tell)
         while (values := solver.solve(deadline)) is not None:
             self.state.rounds["maxsat"] += 1
             known = len(rows)
