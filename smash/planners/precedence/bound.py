@@ -127,8 +127,10 @@ class _Plans:
     def _schedule(self, graph: PrecedenceGraph, chosen: set[int], share: float) -> None:
         started = perf_counter()
         scheduler = Scheduler(self.problem, chosen_of(graph.choices, chosen), graph.demands)
-        limit = started + max(SHORT, share * (self.deadline - started))
-        actions = scheduler.plan(min(self.deadline, limit))
+        limit = min(self.deadline, started + max(SHORT, self.reserve, share * (self.deadline - started)))
+        actions = scheduler.plan(limit)
+        if actions is None and perf_counter() > limit:
+            self._scheduled = None  # with more time it may fit
         if actions is not None and self.problem.open_rest is not None and not self._accepted(actions):
             actions = None
         self._took = perf_counter() - started

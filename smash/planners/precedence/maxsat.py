@@ -41,9 +41,7 @@ class MaxSat:
         on_bound: called at once with every better bound on the number of choices; says whether to go on.
     """
 
-    def __init__(
-        self, turns: TurnGraph, rows: Iterable[Row], deadline: float, on_bound: Callable[[int], bool]
-    ) -> None:
+    def __init__(self, turns: TurnGraph, rows: Iterable[Row], deadline: float, on_bound: Callable[[int], bool]) -> None:
         self._size = len(turns.edges)
         formula = WCNF()
         formula.extend([[choice + 1] for choice in sorted(turns.forced)])
