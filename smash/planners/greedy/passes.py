@@ -30,9 +30,9 @@ LONG = 2_000
 """A first plan of more steps is told before it is shortened: that takes as long as making it."""
 SORTED_BLOCKS = 200
 """With more blocks and no topple the first plan is one that sorts (`sorting.py`): where locations are few, digging
-takes a hundred times as long, to a plan ten times as long."""
+takes many times as long, to a plan many times as long."""
 HOPELESS = 2.0
-"""A first pass is given up at so many times the steps of the sorting plan: passes never make that good."""
+"""A first pass is given up at so many times the steps of the sorting plan: passes were not seen to make that good."""
 SORTED_SHARE = 0.2
 """Share of the time for the first plan in which the sorting one is shortened."""
 
