@@ -20,7 +20,7 @@ SHORT = 0.2
 """Seconds that any schedule may take."""
 EMPTIED_SECONDS = 1.0
 """For the choices that go with the piles that are to be emptied."""
-RESERVE = 2.0
+RESERVE = 3.0
 """How often the time of the schedule before is kept for the last one."""
 
 
