@@ -174,7 +174,10 @@ class _Parts:
         self._search_on(problem, log, until, may_compile=True)
 
     def _search_on(self, problem: Problem, log: SolveLog, until: float, *, may_compile: bool) -> None:
-        numbered, cost = problem.numbered, _cost(log)
+        cost = log.upper
+        if cost is None:  # there was no time for a greedy plan
+            return
+        numbered = problem.numbered
         if self._search is None:
             self._search = StateSearch(numbered, problem.options, cost, on_bound=lambda b: log.prove(b, "astar"))
         search = self._search
@@ -189,17 +192,20 @@ class _Parts:
 
     def beams(self, problem: Problem, log: SolveLog, until: float) -> None:
         """Search with beams; where no state was left out, the best plan is optimal."""
+        cost = log.upper
+        if cost is None:  # there was no time for a greedy plan
+            return
         if self._beam is None:
-            self._beam = BeamSearch(problem.numbered, problem.options, _cost(log), self.settings.seed)
+            self._beam = BeamSearch(problem.numbered, problem.options, cost, self.settings.seed)
         beam = self._beam
         beam.patterns = self._search.patterns if self._search is not None else None
-        beam.lower_upper(_cost(log))
+        beam.lower_upper(cost)
         while (steps := beam.run(until)) is not None:
             log.offer(problem.numbered.actions(steps), "beam")
             if log.settled:
                 break
         if beam.ended == "proven":
-            log.prove(min(beam.upper, _cost(log)), "beam")
+            log.prove(min(beam.upper, cost if log.upper is None else log.upper), "beam")
         log.details |= {"beam": beam.ended, "beam_width": beam.width}
 
     def precedence(self, problem: Problem, log: SolveLog, until: float) -> None:
@@ -227,9 +233,3 @@ class _Parts:
         answer = LayeredPlanner().plan(problem, self.settings, left(until), Relay(log, "milp"))
         if answer.status == "infeasible":
             log.refute(answer.bound_origin or "layered")
-
-
-def _cost(log: SolveLog) -> int:
-    """Return the cost that a plan has to be below: a plain problem that is feasible has a greedy one."""
-    assert log.upper is not None
-    return log.upper

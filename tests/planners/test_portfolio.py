@@ -7,6 +7,7 @@ from time import perf_counter
 import pytest
 from hypothesis import given, settings
 
+from smash.planners.astar.planner import search_numbered_states
 from smash.planners.greedy import greedy_plans
 from smash.planners.portfolio import SmashPlanner, _Parts
 from smash.planners.precedence import PrecedencePlanner
@@ -229,3 +230,13 @@ def test_the_beam_has_all_that_is_left_once_the_search_has_ended():
     methods["search"].run(problem, log, math.inf)
     assert methods["beam"].share() == 1.0
     assert log.details["search"] == "proven"
+
+
+@pytest.mark.parametrize("topple", [True, False])
+def test_where_there_was_no_time_for_a_first_plan_nothing_searches_for_a_cheaper_one(topple):
+    problem = Problem(generate("multi", 6, seed=1)[0], PlanOptions(topple=topple))
+    log, part = SolveLog(problem), _Parts(Settings())
+    for run in (part.light_search, part.search, part.beams, search_numbered_states):
+        run(problem, log, perf_counter() + 10)
+    assert log.best is None
+    assert not log.details

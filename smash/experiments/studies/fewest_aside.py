@@ -74,7 +74,7 @@ def rows(
         assert plan.cost is not None
         gap = 100.0 * (plan.cost - (plan.lower_bound or 0)) / max(1, plan.cost)
         figures = f"{plan.cost} | {plan.lower_bound} | {gap:.2f} | {wall:.1f} | {cpu:.1f}"
-        prover = plan.details["prover"]
+        prover = plan.details["prover"] or "-"
         again = second_bound(problem, HIGHS if prover == MAXSAT else MAXSAT, budget) if twice else ""
         yield f"| {instance.name} | {plan.status} | {figures} | {prover} | {again} |"
     walls, cpus = zip(*seconds, strict=True)

@@ -172,6 +172,7 @@ class _Pass:
         if self._expanded < end and full and not self._grow():
             self.truncated = self.cramped = True
             self._expanded = len(self._costs)
+            engine.cells[engine.task.resumed] = -1  # no state of the next layer was broken off
         if self._expanded == len(self._costs):
             self._next_layer()
         return moves

@@ -40,7 +40,8 @@ class AStarPlanner(MethodPlanner):
 
 def search_numbered_states(problem: Problem, log: SolveLog, until: float) -> None:
     """Search for plans cheaper than the log's best until that is proven or `until` [s, clock of `perf_counter`]."""
-    assert log.upper is not None  # a plain problem that is feasible has a greedy plan
+    if log.upper is None:  # there was no time for a greedy plan, and the search needs one to be cheaper than
+        return
     numbered = problem.numbered
     search = StateSearch(numbered, problem.options, log.upper, on_bound=lambda bound: log.prove(bound, "astar"))
     while search.ended is None and left(until) > 0:

@@ -75,12 +75,15 @@ class Construction:
         self._needed = [(self._release(at), len(pile), at) for at, pile in enumerate(self.piles)]
         self._by_need = sorted(self._needed)
 
-    def run(self, first: Sequence[int] = (), deadline: float = math.inf) -> list[Step] | None:
+    def run(
+        self, first: Sequence[int] = (), deadline: float = math.inf, most_steps: float = math.inf
+    ) -> list[Step] | None:
         """Topple the stacks `first` whole, then work until every target pile is built.
 
         Args:
             first: stacks.
             deadline: when the plan is to be judged [s, `perf_counter`]; it is given up if it would not be.
+            most_steps: it is given up with more.
 
         Returns:
             The steps, or None where it was given up.
@@ -91,9 +94,9 @@ class Construction:
         self._direct_moves()
         while (goal := self._next_goal()) is not None:
             block = self.target[goal][self.done[goal]]
-            if perf_counter() + CHECK_SECONDS * len(self.steps) > deadline:
-                return None
             while self.finished_at[block] == NEVER:
+                if perf_counter() + CHECK_SECONDS * len(self.steps) > deadline or len(self.steps) > most_steps:
+                    return None
                 self._dig(block, goal)
                 self._direct_moves()
         if self.topple:

@@ -11,6 +11,7 @@ from time import perf_counter
 from smash.planners.greedy.construct import NEVER, Construction
 from smash.planners.greedy.line import line_steps
 from smash.planners.greedy.shorten import shorten
+from smash.planners.greedy.sorting import sorted_steps
 from smash.problem.model import Action
 from smash.problem.problem import Problem
 from smash.problem.views.numbered import Numbered, Step, cost_of
@@ -27,6 +28,13 @@ LATER_NOISE = (0.3, 0.6, 1.0, 2.0)
 """The same for the passes after those, in turn."""
 LONG = 2_000
 """A first plan of more steps is told before it is shortened: that takes as long as making it."""
+SORTED_BLOCKS = 200
+"""With more blocks and no topple the first plan is one that sorts (`sorting.py`): where locations are few, digging
+takes many times as long, to a plan many times as long."""
+HOPELESS = 2.0
+"""A first pass is given up at so many times the steps of the sorting plan: passes were not seen to make that good."""
+SORTED_SHARE = 0.2
+"""Share of the time for the first plan in which the sorting one is shortened."""
 
 
 def greedy_plans(
@@ -123,24 +131,18 @@ class _Passes:
         self.toppled: set[int] = set()
         self._attempts = self._all_attempts()
         self._waiting: tuple[Sequence[int], float, bool] | None = None
+        self._sorts = not self.topple and self.problem.blocks > SORTED_BLOCKS
+        self._sorted: list[Step] = []
+        self._hopeless = False
         self._longest = 0.0
         self._passes = 0
 
     def improving(self, deadline: float, patient: bool, first_until: float) -> Iterator[list[Step]]:
         """Yield the first plan and every better one; begin no pass that would end too late, and end one that does."""
         if not self.best:
-            began = perf_counter()
-            latest = max(deadline, first_until)
-            made = self._construct((), 0.0, max(latest, began) + GRACE)
-            if made is None:
+            yield from self._first_plans(max(deadline, first_until))
+            if not self.best:
                 return
-            if len(made.steps) > LONG:
-                yield made.steps
-            self._keep(made, latest)
-            if self.best != made.steps or len(made.steps) <= LONG:
-                yield self.best
-            # With the time that the plan's taker needs to judge and report it.
-            self._longest = perf_counter() - began
         while True:
             attempt = self._waiting or next(self._attempts)
             self._waiting = attempt
@@ -155,12 +157,49 @@ class _Passes:
                 return
             self._waiting = None
             self._passes += not later
-            if self._keep(made, deadline):
+            if self._keep(made, deadline) and self._is_new(self.best):
                 yield self.best
             self._longest = max(self._longest, perf_counter() - began)
 
+    def _first_plans(self, latest: float) -> Iterator[list[Step]]:
+        """Yield what there is before the passes that learn; `best` is empty where the first pass was given up."""
+        if self._sorts:
+            self._sorts = False
+            yield from self._sorting(latest)
+        if self._hopeless:
+            return
+        began = perf_counter()
+        most = HOPELESS * len(self._sorted) if self._sorted else math.inf
+        made = self._construct((), 0.0, latest if self._sorted else max(latest, began) + GRACE, most)
+        if made is None:
+            self._hopeless = perf_counter() < latest
+            return
+        self._learn(made, made.steps)  # before it is told: whoever stops there goes on from it
+        if len(made.steps) > LONG and self._is_new(made.steps):
+            yield made.steps
+        if (self._keep(made, latest) or len(made.steps) <= LONG) and self._is_new(self.best):
+            yield self.best
+        # With the time that the plan's taker needs to judge and report it.
+        self._longest = perf_counter() - began
+
+    def _sorting(self, latest: float) -> Iterator[list[Step]]:
+        """Yield the plan that sorts, and what comes of shortening it; passes learn nothing from it."""
+        steps = sorted_steps(self.problem, self.target)
+        if steps is None:
+            return
+        self._sorted = steps
+        yield steps
+        began = perf_counter()
+        self._sorted = shorten(steps, began + SORTED_SHARE * (latest - began))
+        if len(self._sorted) < len(steps):
+            yield self._sorted
+
+    def _is_new(self, steps: list[Step]) -> bool:
+        """Return whether a plan is better than the one that sorts."""
+        return not self._sorted or cost_of(steps) < cost_of(self._sorted)
+
     def seconds_left(self) -> float:
-        return self._longest * max(0, PASSES + len(self.toppled) - self._passes)
+        return 0.0 if self._hopeless else self._longest * max(0, PASSES + len(self.toppled) - self._passes)
 
     def _all_attempts(self) -> Iterator[tuple[Sequence[int], float, bool]]:
         """Yield (stacks toppled at the start, noise, whether for the patient alone).
@@ -175,7 +214,9 @@ class _Passes:
         for noise in itertools.cycle(LATER_NOISE):
             yield (), noise, True
 
-    def _construct(self, first: Sequence[int], noise: float, give_up: float) -> Construction | None:
+    def _construct(
+        self, first: Sequence[int], noise: float, give_up: float, most_steps: float = math.inf
+    ) -> Construction | None:
         construction = Construction(
             self.problem,
             self.target,
@@ -185,17 +226,20 @@ class _Passes:
             noise=noise,
             draw=self.draw,
         )
-        return None if construction.run(first, give_up) is None else construction
+        return None if construction.run(first, give_up, most_steps) is None else construction
 
     def _keep(self, made: Construction, shorten_until: float) -> bool:
         """Shorten a pass's plan and keep it if it is the best so far."""
         steps = shorten(made.steps, shorten_until)
         if self.best and cost_of(steps) >= cost_of(self.best):
             return False
+        self._learn(made, steps)
+        return True
+
+    def _learn(self, made: Construction, steps: list[Step]) -> None:
         self.best = steps
         self.due = made.finished_at
         self.toppled = made.toppled
-        return True
 
     def _heights(self) -> list[float]:
         """Return the first guess of when each block is due: its height in the target."""

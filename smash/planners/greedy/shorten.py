@@ -10,8 +10,6 @@ from smash.problem.views.numbered import ON_TABLE, TOPPLE, Step
 
 SPAN = 4000
 """The farthest apart two transfers of a block may be to be looked at, in steps: keeps the time near-linear."""
-GLANCE = 64
-"""Transfers looked at between two looks at the clock."""
 
 
 def shorten(steps: Sequence[Step], deadline: float = math.inf) -> list[Step]:
@@ -33,8 +31,6 @@ def _one_pass(steps: list[Step], deadline: float) -> list[Step]:
     last: dict[int, int] = {}
     for index, step in enumerate(steps):
         block, source, target = step
-        if index % GLANCE == 0 and perf_counter() > deadline:
-            break
         if block == TOPPLE:
             continue
         before = last.get(block)
@@ -42,6 +38,8 @@ def _one_pass(steps: list[Step], deadline: float) -> list[Step]:
         earlier = None if before is None else current[before]
         if before is None or earlier is None or earlier[2] != source or index - before > SPAN:
             continue
+        if perf_counter() > deadline:
+            break
         moment = _moment(current, before, index, earlier[1], target)
         if moment is not None:
             _join(current, before, index, moment, last)
@@ -92,7 +90,7 @@ def _join(steps: list[Step | None], before: int, after: int, moment: int, last: 
     steps[after] = None
     for index in range(before, moment):
         step = steps[index]
-        if step is not None and step[0] != TOPPLE and last[step[0]] == index + 1:
+        if step is not None and step[0] != TOPPLE and last.get(step[0]) == index + 1:
             last[step[0]] = index
     if direct is None:
         del last[first[0]]

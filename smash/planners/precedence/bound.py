@@ -20,7 +20,7 @@ SHORT = 0.2
 """Seconds that any schedule may take."""
 EMPTIED_SECONDS = 1.0
 """For the choices that go with the piles that are to be emptied."""
-RESERVE = 2.0
+RESERVE = 3.0
 """How often the time of the schedule before is kept for the last one."""
 
 
@@ -127,8 +127,10 @@ class _Plans:
     def _schedule(self, graph: PrecedenceGraph, chosen: set[int], share: float) -> None:
         started = perf_counter()
         scheduler = Scheduler(self.problem, chosen_of(graph.choices, chosen), graph.demands)
-        limit = started + max(SHORT, share * (self.deadline - started))
-        actions = scheduler.plan(min(self.deadline, limit))
+        limit = min(self.deadline, started + max(SHORT, self.reserve, share * (self.deadline - started)))
+        actions = scheduler.plan(limit)
+        if actions is None and perf_counter() > limit:
+            self._scheduled = None  # with more time it may fit
         if actions is not None and self.problem.open_rest is not None and not self._accepted(actions):
             actions = None
         self._took = perf_counter() - started

@@ -166,7 +166,7 @@ class _Prover:
             if left <= 0:
                 return leaf, None, bound
             self._model.clearSolver()
-            self._model.setOptionValue("time_limit", left)
+            self._model.setOptionValue("time_limit", left + self._model.getRunTime())  # it counts all runs together
             self._model.run()
             if self._model.getModelStatus() == highspy.HighsModelStatus.kInfeasible:
                 impossible, beyond = self._impossible(fixed)

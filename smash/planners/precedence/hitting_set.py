@@ -69,7 +69,7 @@ class HittingSet:
         rows: the cycles (and forced topples) found, as sets of choices of which one must be taken.
         cycles: for each row the blocks of its back edges (a single loose block for a forced topple).
         rounds: LP and MIP solves, rank inequalities, and answers of the MaxSAT solver.
-        prover: what proved the bound, `HIGHS` or `MAXSAT`.
+        prover: what proved the bound, `HIGHS` or `MAXSAT`; None where nothing is proven beyond the base cost.
     """
 
     bound: int
@@ -77,7 +77,7 @@ class HittingSet:
     rows: list[Row] = field(default_factory=list)
     cycles: list[tuple[int, ...]] = field(default_factory=list)
     rounds: dict[str, int] = field(default_factory=lambda: {"lp": 0, "mip": 0, "ranks": 0, "maxsat": 0})
-    prover: str = HIGHS
+    prover: str | None = None
 
 
 class HittingSetSolver:
@@ -244,7 +244,7 @@ class HittingSetSolver:
             self._raise_bound(fewest * self._unit, MAXSAT)
             return not self._proven()
 
-        solver = MaxSat(turns, rows, tell)
+        solver = MaxSat(turns, rows, deadline, tell)
         while (values := solver.solve(deadline)) is not None:
             self.state.rounds["maxsat"] += 1
             known = len(rows)

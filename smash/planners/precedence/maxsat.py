@@ -1,13 +1,14 @@
 """The fewest choices of equal cost that hit every cycle, by core-guided MaxSAT (the extra `maxsat`).
 
 RC2 (A. Ignatiev, A. Morgado and J. Marques-Silva, JSAT 2019) of python-sat: a clause a cycle, a soft clause a choice;
-each unsatisfiable core raises the bound by one, which holds whatever cycles are still unknown. All cycles of two and
-three blocks are there from the start; the others are added where an answer leaves them.
+each unsatisfiable core raises the bound by one, which holds whatever cycles are still unknown. The cycles of two and
+three blocks are there from the start, as far as there is time for them; others are added where an answer leaves them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from itertools import islice
 from time import perf_counter
 from typing import Any
 
@@ -21,6 +22,9 @@ from smash.planners.precedence.turns import TurnGraph
 
 CONFLICTS = 5_000
 """Between two looks at the clock: a fraction of a second."""
+SHORT_SHARE, MOST_SHORT = 0.2, 200_000
+"""Short cycles are listed for no more than this share of the time, and no more of them: the others are added where an
+answer leaves them."""
 
 
 class Stopped(Exception):
@@ -33,15 +37,18 @@ class MaxSat:
     Args:
         turns: the turn graph.
         rows: those known from elsewhere.
+        deadline: when `solve` will have to stop [s, `perf_counter`]: a share of the time is for the short cycles.
         on_bound: called at once with every better bound on the number of choices; says whether to go on.
     """
 
-    def __init__(self, turns: TurnGraph, rows: Iterable[Row], on_bound: Callable[[int], bool]) -> None:
+    def __init__(self, turns: TurnGraph, rows: Iterable[Row], deadline: float, on_bound: Callable[[int], bool]) -> None:
         self._size = len(turns.edges)
         formula = WCNF()
         formula.extend([[choice + 1] for choice in sorted(turns.forced)])
         formula.extend([_clause(row) for row in rows])
-        formula.extend([_clause(cycle) for cycle in short_cycles(turns)])
+        began = perf_counter()
+        known = islice(short_cycles(turns, began + SHORT_SHARE * (deadline - began)), MOST_SHORT)
+        formula.extend([_clause(cycle) for cycle in known])
         formula.extend([[-(choice + 1)] for choice in range(self._size)], weights=[1] * self._size)
         self._solver = _CoreGuided(formula, on_bound)
 
@@ -114,18 +121,27 @@ class _CoreGuided(RC2):  # type: ignore[misc]
         raise Stopped
 
 
-def short_cycles(turns: TurnGraph) -> Iterator[tuple[int, ...]]:
-    """Yield the cycles of two and of three free choices that hold no shorter one."""
+def short_cycles(turns: TurnGraph, deadline: float = np.inf) -> Iterator[tuple[int, ...]]:
+    """Yield the cycles of two and of three free choices that hold no shorter one, until `deadline`.
+
+    Args:
+        turns: the turn graph.
+        deadline: when to stop [s, `perf_counter`].
+    """
     leads = np.zeros(turns.edges.shape, dtype=bool)
     inner = np.ix_(turns.free, turns.free)
     leads[inner] = turns.edges[inner] == 1
     both = leads & leads.T
+    if perf_counter() > deadline:
+        return
     yield from map(tuple, np.argwhere(np.triu(both)).tolist())
     one_way = leads & ~both
     for first in range(len(leads)):
         later = np.arange(len(leads)) > first
         closing = one_way[:, first] & later
         for second in np.flatnonzero(one_way[first] & later).tolist():
+            if perf_counter() > deadline:
+                return
             for third in np.flatnonzero(one_way[second] & closing).tolist():
                 yield first, second, third
 

@@ -6,12 +6,14 @@ from collections.abc import Sequence
 from typing import ClassVar
 
 from smash.planners.greedy import greedy_method
-from smash.planners.protocol import Method, MethodPlanner, Settings, SolveLog, plain
+from smash.planners.protocol import Method, MethodPlanner, Settings, SolveLog, left, plain
 from smash.problem.extras import is_there
 from smash.problem.problem import Problem
 
 GREEDY_SHARE = 0.1
 """Share of the time left that the greedy planner gets where the exact choices need more buffers than there are."""
+BLOCK_SECONDS = 2e-4
+"""With less time than this per block there may be none for the graph and a schedule: a greedy plan comes first."""
 
 
 class PrecedencePlanner(MethodPlanner):
@@ -47,12 +49,15 @@ def _hitting_set(problem: Problem, settings: Settings, log: SolveLog, until: flo
     from smash.planners.precedence.bound import ORIGIN, precedence_bound
 
     fallback = greedy_method(settings, GREEDY_SHARE)
+    hurried = left(until) < BLOCK_SECONDS * len(problem.instance.blocks)
+    if hurried:
+        fallback.run(problem, log, fallback.until(until))
     found = precedence_bound(
         problem,
         until,
         lambda actions: log.offer(actions, "exact"),
         settings.threads,
-        lambda: fallback.run(problem, log, fallback.until(until)),
+        None if hurried else lambda: fallback.run(problem, log, fallback.until(until)),
         lambda bound: log.prove(bound, ORIGIN),
     )
     log.details |= {

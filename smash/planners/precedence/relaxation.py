@@ -121,7 +121,8 @@ class Relaxation:
             return False
         self._send()
         self._model.clearSolver()
-        self._model.setOptionValue("time_limit", left)
+        # HiGHS counts the runs of an object together.
+        self._model.setOptionValue("time_limit", left + self._model.getRunTime())
         if known is not None:
             solution = highspy.HighsSolution()
             solution.col_value = [float(column in known) for column in range(len(self.values))]

@@ -9,6 +9,7 @@ depth-first search tries the alternatives, so that few buffers are used as well 
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
@@ -92,6 +93,7 @@ class Scheduler:
         }
         self._riders = any(instance.start[buffer] for buffer in instance.buffers)
         self.nodes = 0
+        self._deadline = math.inf
 
     def _extend_segments(self) -> None:
         """Let a topple take the kept blocks below it that the goal does not name: free, and may empty a location."""
@@ -109,20 +111,26 @@ class Scheduler:
             segments[-1] = (low, high)
 
     def plan(self, deadline: float, most_nodes: int = 20_000) -> tuple[Action, ...] | None:
-        """Return a plan in which exactly the chosen blocks are freed, or None where none was found."""
+        """Return a plan in which exactly the chosen blocks are freed, or None where none was found.
+
+        Args:
+            deadline: when to give up [s, `perf_counter`].
+            most_nodes: branches after which to give up.
+        """
+        self._deadline = deadline
         first = self._start()
         if self._advance(first):
             return tuple(first.actions)
         seen: set[object] = {first.key()}
         memo = len(self.instance.blocks) <= MEMO_BLOCKS
         stack = [self._branches(first)]
-        while stack:
+        while stack and perf_counter() <= deadline:
             branch = next(stack[-1], None)
             if branch is None:
                 stack.pop()
                 continue
             self.nodes += 1
-            if self.nodes > most_nodes or perf_counter() > deadline:
+            if self.nodes > most_nodes:
                 return None
             if self._advance(branch):
                 return tuple(branch.actions)
@@ -152,7 +160,7 @@ class Scheduler:
     def _advance(self, state: Progress) -> bool:
         """Do all that can be done without regret; return whether the goal is reached."""
         moved = True
-        while moved:
+        while moved and perf_counter() <= self._deadline:
             moved = (
                 self._place_ready(state)
                 or self._topple_ready(state)
@@ -165,7 +173,7 @@ class Scheduler:
     def _place_ready(self, state: Progress) -> bool:
         moved = False
         for location in list(state.chain_at):
-            while location in state.chain_at:
+            while location in state.chain_at and perf_counter() <= self._deadline:
                 number = state.chain_at[location]
                 block = self.chains[number][state.placed[number]]
                 if state.where[block] == location or not self._accessible(state, block):

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 
 from smash.planners.astar import BeamSearch, beam
+from smash.planners.astar.task import make_setting
 from smash.planners.greedy import greedy_steps
 from smash.planners.portfolio import SmashPlanner
 from smash.planners.protocol import SolveOptions
@@ -140,3 +141,22 @@ def test_the_default_betters_the_greedy_plan_of_fifteen_blocks_without_buffers()
     result = SmashPlanner().solve(instance, options, 15)
     assert result.cost < greedy_cost(Numbered.of(instance), options)
     assert Law(instance, options).check(result.actions).accepted
+
+
+def test_a_state_that_was_broken_off_where_memory_ends_is_not_gone_on_with_in_the_next_layer(machine_code):
+    problem = Numbered.of(generate("multi", 9, seed=4)[0])
+    setting = make_setting(problem, PlanOptions())
+    running = beam._Pass(setting, machine_code, 80, 4, beam.MOST_MEMORY, 0)
+    running.advance()
+    engine = running.engine
+
+    def break_off(task, cells, rows, costs, estimates, store, first, end):
+        store.counters[beam.NODES] = store.shape[2]
+        cells[task.resumed] = 0
+        return first
+
+    running._most = int(running._store.shape[2])
+    engine.code = machine_code._replace(expand_layer=break_off)
+    running.advance()
+    assert running.cramped
+    assert engine.cells[engine.task.resumed] == -1

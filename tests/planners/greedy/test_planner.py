@@ -118,3 +118,11 @@ def test_a_pass_that_is_given_up_is_made_again_when_there_is_time(monkeypatch):
             patch.setattr("smash.planners.greedy.construct.perf_counter", clock.__next__)
             found += run.plans(1.0)
     assert [*found, *run.plans(math.inf)] == whole
+
+
+def test_a_long_first_plan_is_known_when_it_is_told(monkeypatch):
+    monkeypatch.setattr(passes, "LONG", 0)
+    run = passes._run_of(Problem(generate("multi", 9, seed=1)[0], PlanOptions()), 0)
+    told = next(run.improving(math.inf, False, math.inf))
+    assert run.best == told
+    assert all(cost_of(steps) < cost_of(told) for steps in run.improving(math.inf, False, math.inf))

@@ -81,3 +81,9 @@ def test_a_block_that_falls_in_between_is_moved_twice():
     instance = make_instance(name="x", blocks="a", stacks=["p", "q", "r"], start={"p": "a"}, goal=PositionsGoal({}))
     assert end_of(Numbered.of(instance), shorten(steps)) == end_of(Numbered.of(instance), steps)
     assert shorten(steps) == steps
+
+
+def test_a_block_that_came_back_has_earlier_transfers_still():
+    steps = [(3, 1, 2), (1, 0, 2), (1, 2, 1), (0, 0, 2), (1, 1, 2)]
+    steps += [(1, 2, 0), (0, 2, 1), (1, 0, 1), (1, 1, 0), (3, 2, 0)]
+    assert shorten(steps) == [(1, 0, 1), (0, 0, 2), (1, 1, 0), (3, 1, 0), (0, 2, 1)]

@@ -78,3 +78,8 @@ def test_where_the_relaxation_leaves_a_gap_integer_choices_close_it(blocks, stac
     assert found.rounds["mip"] >= 1
     assert hits_all(graph, found.chosen)
     assert found.bound == solver.cost(found.chosen)
+
+
+def test_nobody_has_proven_a_bound_that_is_the_base_cost():
+    graph = build_graph(Problem(wide(30, 5, seed=1), PlanOptions(topple=False)))
+    assert HittingSetSolver(graph).solve(-1.0).prover is None

@@ -122,3 +122,12 @@ def test_incumbents_are_reported_at_once():
 def test_no_blocks_need_no_actions(goal):
     result = solve(make_instance(name="x", blocks=[], stacks=["s1"], start={}, goal=goal))
     assert (result.status, result.cost, result.lower_bound) == ("optimal", 0, 0)
+
+
+@pytest.mark.parametrize("topple", [True, False])
+def test_with_less_time_than_a_schedule_takes_there_is_a_greedy_plan_first(topple):
+    instance = generate("multi", 600, stacks=20, buffers=4, seed=5)[0]
+    result = PrecedencePlanner().solve(instance, SolveOptions(topple), 0.01)
+    assert result.incumbents[0].origin == "greedy"
+    assert Law(instance, PlanOptions(topple)).check(result.actions).accepted
+    assert result.lower_bound is not None

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from smash.planners.precedence import relaxation
 from smash.planners.precedence.relaxation import Relaxation
 
 PAIRS = [frozenset({0, 1}), frozenset({1, 2}), frozenset({0, 2})]
@@ -54,3 +55,12 @@ def test_rows_that_are_exceeded_are_dropped_and_may_come_again(triangle):
 def test_past_the_deadline_nothing_is_solved(triangle):
     assert not triangle.solve(-math.inf)
     assert triangle.solve_whole(-math.inf, {0, 1, 2}, 0.999, lambda bound: None) is None
+
+
+def test_earlier_runs_take_nothing_off_the_time_of_a_later_one(triangle, monkeypatch):
+    while triangle._model.getRunTime() < 0.01:
+        assert triangle.solve(math.inf)
+    before = triangle._model.getRunTime()
+    monkeypatch.setattr(relaxation, "perf_counter", lambda: 0.0)
+    assert triangle.solve(100.0)
+    assert triangle._model.getOptionValue("time_limit")[1] == 100.0 + before

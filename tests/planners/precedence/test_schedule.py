@@ -1,10 +1,12 @@
 """Schedules: choices that hit every cycle carried out, at the cost that they say, where the blocks find places."""
 
+import itertools
 import math
 
 import pytest
 from hypothesis import assume, given, settings
 
+from smash.planners.precedence import schedule
 from smash.planners.precedence.dive import dive
 from smash.planners.precedence.graph import build_graph
 from smash.planners.precedence.schedule import Scheduler, chosen_of
@@ -81,3 +83,14 @@ def test_a_block_that_the_goal_does_not_name_may_ride_on_a_stack_that_is_toppled
     )
     plan, cost = scheduled(instance, PlanOptions(max_topple=2))
     assert plan is None or len(plan) == cost
+
+
+def test_a_schedule_is_given_up_at_its_deadline(monkeypatch):
+    problem = Problem(wide(30, 30, seed=1), PlanOptions())
+    graph = build_graph(problem)
+    scheduler = Scheduler(problem, chosen_of(graph.choices, dive(graph)))
+    assert scheduler.plan(math.inf) is not None
+    clock = itertools.count()
+    monkeypatch.setattr(schedule, "perf_counter", lambda: float(next(clock)))
+    assert scheduler.plan(10.0) is None
+    assert next(clock) < 30

@@ -76,6 +76,7 @@ def test_maxsat_that_is_stopped_leaves_a_bound_that_holds(kernels, monkeypatch):
     graph = build_graph(Problem(wide(60, 10, seed=2), PlanOptions(topple=False)))
     full = HittingSetSolver(graph).solve(math.inf).bound
     stopped = HittingSetSolver(graph)
+    monkeypatch.setattr(maxsat, "short_cycles", lambda turns, deadline, every=maxsat.short_cycles: list(every(turns)))
     monkeypatch.setattr(maxsat, "perf_counter", iter([0.0] * 40 + [math.inf] * 9).__next__)
     found = stopped.solve(math.inf)
     assert found.bound <= full <= stopped.cost(found.chosen)
@@ -100,3 +101,31 @@ def test_short_cycles_are_all_cycles_of_two_and_three_without_a_shorter_one(seed
     assert sorted(cycle for cycle in found if len(cycle) == 2) == sorted(pairs)
     assert {frozenset(cycle) for cycle in found if len(cycle) == 3} == triples
     assert len(found) == len(pairs) + len(triples)
+
+
+@NO_MAXSAT
+@pytest.mark.usefixtures("at_once")
+@pytest.mark.parametrize("most", [0, 7])
+def test_short_cycles_that_there_was_no_time_for_are_added_where_an_answer_leaves_them(most, kernels, monkeypatch):
+    from smash.planners.precedence import maxsat
+
+    graph = build_graph(Problem(wide(40, 8, seed=4), PlanOptions(topple=False)))
+    full = HittingSetSolver(graph).solve(math.inf)
+    monkeypatch.setattr(maxsat, "MOST_SHORT", most)
+    found = HittingSetSolver(graph).solve(math.inf)
+    assert found.bound == full.bound
+    assert hits_all(graph, found.chosen)
+
+
+@NO_MAXSAT
+def test_listing_short_cycles_ends_at_the_deadline(monkeypatch):
+    from smash.planners.precedence import maxsat
+    from smash.planners.precedence.turns import turn_graph
+
+    turns = turn_graph(build_graph(Problem(wide(60, 10, seed=2), PlanOptions(topple=False))))
+    clock = itertools.count()
+    monkeypatch.setattr(maxsat, "perf_counter", lambda: float(next(clock)))
+    every, some = list(maxsat.short_cycles(turns)), list(maxsat.short_cycles(turns, next(clock) + 20.0))
+    assert 0 < len(some) < len(every)
+    assert some == every[: len(some)]
+    assert not list(maxsat.short_cycles(turns, -1.0))
