@@ -15,7 +15,7 @@ import pytest
 from smash.experiments.isolation.caller import run_isolated, when
 from smash.experiments.isolation.job import Job
 from smash.experiments.isolation.shared_memory import PLACE, segments
-from smash.experiments.isolation.starting import shared_server
+from smash.experiments.isolation.starting import server_processes
 from smash.planners.protocol import Settings
 from smash.problem import PlanOptions
 from smash.problem.errors import SmashError
@@ -67,13 +67,14 @@ def marked(mark):
 
 @pytest.fixture
 def alive(monkeypatch, tmp_path):
-    """Count processes below this one, or with the mark of this test, that are still alive; the fork server apart."""
+    """Count processes below this one, or with the mark of this test, that are still alive; the fork servers apart."""
     mark = tmp_path.name + str(time.time())
     monkeypatch.setenv("MARKED", mark)
 
     def count():
         found = {*marked(mark), *psutil.Process().children(recursive=True)}
-        return [p for p in found if p.pid not in (os.getpid(), shared_server(Job.loaded_by)._process) and runs(p)]
+        apart = {os.getpid(), *server_processes()}
+        return [p for p in found if p.pid not in apart and runs(p)]
 
     return count
 

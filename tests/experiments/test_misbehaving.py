@@ -12,7 +12,7 @@ import pytest
 
 from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import Job
-from smash.experiments.isolation.starting import shared_server
+from smash.experiments.isolation.starting import server_processes
 from smash.planners.protocol import Settings
 from smash.problem import PlanOptions
 from smash.problem.files.instances import read_instance
@@ -36,7 +36,7 @@ def left():
     """Processes below this one, its fork server apart, and what runs have left in folders and shared memory."""
     below = psutil.Process().children(recursive=True)
     shared = {name for name in os.listdir("/dev/shm") if name.startswith(("psm_", "smash-run-"))}
-    return {process for process in below if process.pid != shared_server(Job.loaded_by)._process}, shared
+    return {process for process in below if process.pid not in server_processes()}, shared
 
 
 @pytest.mark.timeout(300)

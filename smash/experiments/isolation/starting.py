@@ -230,6 +230,11 @@ def shared_server(loaded_by: str) -> ForkServer:
     return _SERVERS.setdefault(loaded_by, ForkServer(loaded_by))
 
 
+def server_processes() -> set[int]:
+    """Return the processes of the servers of this process that have been started."""
+    return {server._process for server in _SERVERS.values() if server._process}
+
+
 def _close_all() -> None:
     for server in _SERVERS.values():
         server.close()
