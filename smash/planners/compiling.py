@@ -56,7 +56,7 @@ class CompiledOnce:
         if cls._thread is None:
             cls._thread = threading.Thread(target=cls._compile, daemon=True)
             cls._thread.start()
-        cls._thread.join(max(0.0, deadline - perf_counter()))
+        cls._thread.join(min(threading.TIMEOUT_MAX, max(0.0, deadline - perf_counter())))
         return cls._code
 
     @classmethod

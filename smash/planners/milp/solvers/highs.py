@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from threading import Event, Thread
+from threading import TIMEOUT_MAX, Event, Thread
 from time import perf_counter
 from typing import Any
 
@@ -115,7 +115,7 @@ def _run_until(solver: Any, end: float) -> bool:
 
     running = Thread(target=go, daemon=True)
     running.start()
-    running.join(max(0.0, end - perf_counter()))
+    running.join(min(TIMEOUT_MAX, max(0.0, end - perf_counter())))
     for error in raised:
         raise error
     return not running.is_alive()
