@@ -7,21 +7,16 @@ the member near it. Everything is a function of its arguments: the random seeds 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 
 import numpy as np
-import pinocchio
+from numpy.typing import NDArray
 
+from smash.motion.descent import descent
 from smash.motion.poses import ToolPose, Vector
-from smash.motion.robot import JOINTS, LOWER, READY, UPPER, Panda, panda, within_limits
+from smash.motion.robot import JOINTS, LOWER, READY, UPPER, Panda, panda
 
-POSITION_TOLERANCE = 1e-5
-"""Error that counts as none: [m] for the linear and [rad] for the angular part."""
-DAMPING = 1e-3
 ITERATIONS = 40
-PATIENCE = 6
-"""A descent ends when so many iterations in a row have not halved its error."""
-LARGEST_STEP = 0.5
-"""Largest change of any joint in one iteration [rad]."""
 RANDOM_SEEDS = 16
 SAME_SOLUTION = 0.05
 """Solutions closer than this in every joint count once [rad]."""
@@ -61,29 +56,16 @@ def inverse(
 
 def descend(pose: ToolPose, start: Vector, robot: Panda, iterations: int = ITERATIONS) -> Vector | None:
     """One damped descent from `start` [rad], shape (7,): the solution, or None where it ends elsewhere."""
-    target = pinocchio.SE3(pose.rotation, pose.position)
-    joints = np.clip(start, LOWER, UPPER)
-    halved, patience = np.inf, PATIENCE
-    for _ in range(iterations):
-        pinocchio.computeJointJacobians(robot.model, robot.data, joints)
-        placement = pinocchio.updateFramePlacement(robot.model, robot.data, robot.tool)
-        jacobian = pinocchio.getFrameJacobian(robot.model, robot.data, robot.tool, pinocchio.LOCAL)
-        error = pinocchio.log6(placement.actInv(target)).vector
-        if np.abs(error).max() < POSITION_TOLERANCE:
-            return joints if within_limits(joints) else None
-        square = float(error @ error)
-        if square < halved / 4:
-            halved, patience = square, PATIENCE
-        patience -= 1
-        if patience < 0:
-            return None
-        damping = DAMPING * min(1.0, square)
-        system = jacobian @ jacobian.T
-        system[np.diag_indices(6)] += damping
-        step = jacobian.T @ np.linalg.solve(system, error)
-        largest = float(np.abs(step).max())
-        joints = np.clip(joints + step * min(1.0, LARGEST_STEP / max(largest, 1e-12)), LOWER, UPPER)
-    return None
+    reached, joints = descent(
+        _chain(robot), LOWER, UPPER, np.ascontiguousarray(pose.rotation), pose.position, start, iterations
+    )
+    return joints if reached else None
+
+
+@lru_cache
+def _chain(robot: Panda) -> NDArray[np.float64]:
+    """The robot's fixed transforms, shape (8, 3, 4), as the compiled descent takes them."""
+    return np.ascontiguousarray(robot.chain())
 
 
 def along_line(
