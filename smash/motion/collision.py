@@ -7,7 +7,6 @@ Which parts are asked about each other the robot's file says: neighbours overlap
 from __future__ import annotations
 
 from functools import lru_cache
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -110,6 +109,7 @@ class CollisionChecker:
         self.scene = scene
         self.hand = hand or HandState()
         self.margin = margin
+        self._smallest = max(SMALLEST_STEP, float(margin))
         boxes = _hand_boxes(robot.hand, self.hand)
         demands = kernel.Demands(float(margin), WRIST_ALLOWANCE, *_hand_pairs(robot, len(boxes.centres)))
         around = kernel.Boxes(scene.centres, scene.half_extents, scene.rotations)
@@ -125,18 +125,15 @@ class CollisionChecker:
 
     def segment_free(self, begin: Vector, end: Vector) -> bool:
         """Whether all of the straight joint segment is free."""
-        if kernel.motion_blocked_at_a_glance(begin, end, *self._setting):
-            return False
-        return self.segment_reach(begin, end) >= 1.0
+        return self.path_free(np.stack([begin, end]))
 
     def segment_reach(self, begin: Vector, end: Vector) -> float:
         """The part of the segment that is free, from its beginning: 1 is all of it."""
-        smallest = max(SMALLEST_STEP, self.margin)
-        return float(kernel.motion_free(begin, end, smallest, *self._setting))
+        return float(kernel.motion_free(begin, end, self._smallest, *self._setting))
 
     def path_free(self, waypoints: NDArray[np.float64]) -> bool:
         """Whether all segments between consecutive waypoints [rad], shape (W, n), are free."""
-        return all(self.segment_free(begin, end) for begin, end in pairwise(waypoints))
+        return kernel.polyline_free(np.ascontiguousarray(waypoints), self._smallest, *self._setting)
 
     def blockers(self, joints: Vector) -> tuple[str, ...]:
         """What is too close at `joints`: names of blocks, "the table", "the robot itself"; empty where free."""

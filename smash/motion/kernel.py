@@ -429,3 +429,15 @@ def motion_blocked_at_a_glance(begin: Array, end: Array, arm: Arm, hand: Boxes, 
         if state_slack(begin + part / parts * (end - begin), arm, hand, scene, demands) <= 0.0:
             return True
     return False
+
+
+@compiled
+def polyline_free(waypoints: Array, smallest: float, arm: Arm, hand: Boxes, scene: Boxes, demands: Demands) -> bool:
+    """Whether all segments between consecutive waypoints [rad], (W, 7), are free."""
+    for row in range(waypoints.shape[0] - 1):
+        begin, end = waypoints[row], waypoints[row + 1]
+        if motion_blocked_at_a_glance(begin, end, arm, hand, scene, demands):
+            return False
+        if motion_free(begin, end, smallest, arm, hand, scene, demands) < 1.0:
+            return False
+    return True

@@ -10,19 +10,13 @@ from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
 import numpy as np
-import pinocchio
+from numpy.typing import NDArray
 
+from smash.motion.descent import descent
 from smash.motion.poses import ToolPose, Vector
 from smash.motion.robot import Robot
 
-POSITION_TOLERANCE = 1e-5
-"""Error that counts as none: [m] for the linear and [rad] for the angular part."""
-DAMPING = 1e-3
 ITERATIONS = 40
-PATIENCE = 6
-"""A descent ends when so many iterations in a row have not halved its error."""
-LARGEST_STEP = 0.5
-"""Largest change of any joint in one iteration [rad]."""
 RANDOM_SEEDS = 16
 SWIVELS = (0.0, 0.5, -0.5)
 """Turns of the first joint that an arm with a swivel begins with beside the target's bearing [rad]."""
@@ -64,29 +58,22 @@ def inverse(
 
 def descend(robot: Robot, pose: ToolPose, start: Vector, iterations: int = ITERATIONS) -> Vector | None:
     """One damped descent from `start` [rad], shape (n,): the solution, or None where it ends elsewhere."""
-    target = pinocchio.SE3(pose.rotation, pose.position)
-    joints = np.clip(start, robot.lower, robot.upper)
-    halved, patience = np.inf, PATIENCE
-    for _ in range(iterations):
-        pinocchio.computeJointJacobians(robot.model, robot.data, joints)
-        placement = pinocchio.updateFramePlacement(robot.model, robot.data, robot.tool)
-        jacobian = pinocchio.getFrameJacobian(robot.model, robot.data, robot.tool, pinocchio.LOCAL)
-        error = pinocchio.log6(placement.actInv(target)).vector
-        if np.abs(error).max() < POSITION_TOLERANCE:
-            return joints if robot.within_limits(joints) else None
-        square = float(error @ error)
-        if square < halved / 4:
-            halved, patience = square, PATIENCE
-        patience -= 1
-        if patience < 0:
-            return None
-        damping = DAMPING * min(1.0, square)
-        system = jacobian @ jacobian.T
-        system[np.diag_indices(6)] += damping
-        step = jacobian.T @ np.linalg.solve(system, error)
-        largest = float(np.abs(step).max())
-        joints = np.clip(joints + step * min(1.0, LARGEST_STEP / max(largest, 1e-12)), robot.lower, robot.upper)
-    return None
+    reached, joints = descent(
+        _chain(robot),
+        robot.lower,
+        robot.upper,
+        np.ascontiguousarray(pose.rotation),
+        pose.position,
+        start,
+        iterations,
+    )
+    return joints if reached else None
+
+
+@lru_cache
+def _chain(robot: Robot) -> NDArray[np.float64]:
+    """The robot's fixed transforms, shape (n + 1, 3, 4), as the compiled descent takes them."""
+    return np.ascontiguousarray(robot.chain())
 
 
 def along_line(

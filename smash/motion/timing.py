@@ -15,6 +15,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from smash.motion.errors import NoMotion
@@ -90,6 +91,14 @@ class Trajectory:
             + (cube - square) * span * self.velocities[index + 1]
         )
 
+    def reversed(self) -> Trajectory:
+        """The same motion backwards: it keeps what this one keeps, and is as fast."""
+        return Trajectory(
+            self.duration - self.times[::-1],
+            np.ascontiguousarray(self.positions[::-1]),
+            np.ascontiguousarray(-self.velocities[::-1]),
+        )
+
     def sample(self, step: float) -> NDArray[np.float64]:
         """Configurations every `step` [s] after the start, the end included: [rad], shape (N, n)."""
         count = max(1, int(np.ceil(self.duration / step - 1e-9)))
@@ -122,15 +131,18 @@ def eased(trajectory: Trajectory) -> Trajectory:
     most a [rad/s^2] the path is left by a EASED^2 / 24, a fraction of a milliradian.
     """
     duration = trajectory.duration + EASED
-    times = np.append(np.arange(0.0, duration - KNOT_STEP / 2, KNOT_STEP), duration)
-    before = np.linspace(0.0, EASED, round(EASED / EASED_STEP) + 1)
-    weights = np.full(len(before), 1.0 / (len(before) - 1))
+    knots = np.arange(0.0, duration - KNOT_STEP / 2, KNOT_STEP)
+    window, stride = round(EASED / EASED_STEP), round(KNOT_STEP / EASED_STEP)
+    weights = np.full(window + 1, 1.0 / window)
     weights[[0, -1]] /= 2
-    past = trajectory.at((times[:, None] - before).ravel()).reshape(len(times), len(before), -1)
-    positions = np.einsum("tbj,b->tj", past, weights)
-    velocities = (past[:, 0] - past[:, -1]) / EASED
-    positions[[0, -1]], velocities[[0, -1]] = trajectory.positions[[0, -1]], 0.0
-    return Trajectory(times, positions, velocities)
+    # What is averaged for one knot overlaps with that for the next: it is looked at once.
+    moments = np.arange(-window, stride * (len(knots) - 1) + 1, dtype=np.float64) * EASED_STEP
+    past = sliding_window_view(trajectory.at(moments), window + 1, axis=0)[::stride]
+    ends = trajectory.positions[[0, -1]]
+    positions = np.concatenate([past @ weights, ends[1:]])
+    velocities = np.concatenate([(past[:, :, -1] - past[:, :, 0]) / EASED, np.zeros_like(ends[1:])])
+    positions[0], velocities[0] = ends[0], 0.0
+    return Trajectory(np.append(knots, duration), positions, velocities)
 
 
 def trapezoid(robot: Robot, begin: NDArray[np.float64], end: NDArray[np.float64], pace: Pace = FREE) -> Trajectory:

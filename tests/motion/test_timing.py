@@ -71,3 +71,15 @@ def test_a_trajectory_stays_on_its_path():
 def test_a_finer_sampling_of_a_trajectory_passes_through_the_coarser_one():
     trajectory = time_path(PANDA, Path(CORNERS, "tree"))
     assert np.allclose(trajectory.sample(0.01)[:-1], trajectory.sample(0.002)[4::5][: len(trajectory.sample(0.01)) - 1])
+
+
+def test_a_trajectory_backwards_keeps_the_limits_and_passes_the_same_places():
+    forth = time_path(PANDA, Path(CORNERS, "tree"), Pace(1.0, 1.0))
+    back, step = forth.reversed(), 1e-3
+    assert back.duration == forth.duration
+    moments = np.linspace(0.0, forth.duration, 50)
+    assert np.allclose(back.at(moments), forth.at(forth.duration - moments))
+    rest = np.repeat(CORNERS[-1:], 5, axis=0), np.repeat(CORNERS[:1], 5, axis=0)
+    samples = np.vstack([rest[0], back.sample(step), rest[1]])
+    for order, limit in ((1, PANDA.velocity * 1.01), (2, PANDA.acceleration * 1.02), (3, PANDA.jerk)):
+        assert np.all(np.abs(np.diff(samples, order, axis=0)) / step**order <= limit)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -180,3 +180,10 @@ class ArmMotions:
     ) -> Move:
         """A timed motion along `path`, at the usual pace where none is given."""
         return Move(self.robot, path, time_path(self.robot, path, pace or self.pace), hand, ignored, margin)
+
+    def back(self, move: Move, hand: HandState | None = None) -> Move:
+        """The same motion backwards, with another hand where one is given.
+
+        Limits of speed and acceleration are the same both ways, so the way back is as fast.
+        """
+        return replace(move, path=move.path.reversed(), trajectory=move.trajectory.reversed(), hand=hand or move.hand)

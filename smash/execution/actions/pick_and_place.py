@@ -97,13 +97,9 @@ class PickAndPlace:
             except NoMotion as failure:
                 problem = problem or failure
                 continue
-            touched: frozenset[BodyName] = frozenset([block])
-            return [
-                *transfer,
-                self._arm.move(approach.line, open_hand, touched, CONTACT_MARGIN),
-                Grip(0.0, CLOSE_SECONDS),
-                self._arm.move(approach.line.reversed(), grasp.hand(self._arm.side), touched, CONTACT_MARGIN),
-            ]
+            down = self._arm.move(approach.line, open_hand, frozenset([block]), CONTACT_MARGIN)
+            up = self._arm.back(down, grasp.hand(self._arm.side))
+            return [*transfer, down, Grip(0.0, CLOSE_SECONDS), up]
         raise problem or NoMotion(f"no room for the hand around block {block!r}")
 
     def landing(self, start: Vector, block: str, target: BlockPose, scene: Scene, grasp: Grasp = CENTRED) -> Approach:
@@ -149,12 +145,10 @@ class PickAndPlace:
         """
         touched: frozenset[BodyName] = frozenset([block])
         holding = approach.grasp.hand(self._arm.side)
-        return [
-            *self._arm.transfer(start, approach.line.start, scene, holding, touched),
-            self._arm.move(approach.line, holding, touched, CONTACT_MARGIN),
-            Grip(approach.opening, OPEN_SECONDS),
-            self._arm.move(approach.line.reversed(), HandState(approach.opening), touched, CONTACT_MARGIN),
-        ]
+        transfer = self._arm.transfer(start, approach.line.start, scene, holding, touched)
+        down = self._arm.move(approach.line, holding, touched, CONTACT_MARGIN)
+        up = self._arm.back(down, HandState(approach.opening))
+        return [*transfer, down, Grip(approach.opening, OPEN_SECONDS), up]
 
     def _approaches(
         self,

@@ -275,9 +275,8 @@ def _way_in(arm: ArmMotions, start: Vector, joints: Vector, scene: Scene) -> tup
     except NoMotion:
         down = arm.planner.line(joints, (0.0, 0.0, LEAD), scene, hand=closed, margin=PUSH_MARGIN).reversed()
         above = arm.transfer(start, down.start, scene, closed)
-        return [*above, arm.move(down, closed, margin=PUSH_MARGIN)], [
-            arm.move(down.reversed(), closed, margin=PUSH_MARGIN)
-        ]
+        descent = arm.move(down, closed, margin=PUSH_MARGIN)
+        return [*above, descent], [arm.back(descent)]
 
 
 def _rise(arm: ArmMotions, joints: Vector, height: int, falling: int, scene: Scene) -> list[Segment]:

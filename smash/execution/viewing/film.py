@@ -86,7 +86,11 @@ def write_film(path: Path, recording: Recording, tabletop: Tabletop, episode: Ep
     """Write an episode as a film, .mp4 or .gif, several times faster than it was; captions say when and what."""
     import imageio.v2 as imageio
 
-    options: dict[str, Any] = {"fps": 1000 / FRAME_TIME, "ffmpeg_log_level": "quiet"}
+    options: dict[str, Any] = {
+        "fps": 1000 / FRAME_TIME,
+        "ffmpeg_log_level": "quiet",
+        "output_params": ["-preset", "veryfast"],
+    }
     if path.suffix == ".gif":
         options = {"duration": FRAME_TIME, "loop": 0}
     writer: Any = imageio.get_writer(path, **options)
