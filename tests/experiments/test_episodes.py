@@ -77,6 +77,15 @@ def test_limits_hold_for_episodes_as_for_planners(results, limits, said):
     assert said in ended.reason
 
 
+@simulated
+def test_a_machine_without_the_engine_has_no_episode_to_record(results, tmp_path, monkeypatch):
+    (tmp_path / "mujoco.py").write_text("raise ModuleNotFoundError('No module named mujoco', name='mujoco')\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    run = msgspec.structs.replace(episode_runs(results, [1], ["open"])[0], engine="mujoco")
+    with pytest.raises(SmashError, match=r"needs mujoco: pip install 'smash-testbed\[mujoco\]'"):
+        run_episode(run)
+
+
 def unmeasured(episode):
     return episode.without_measured_times()
 
