@@ -22,6 +22,8 @@ from smash.records.runs import RunRecord
 
 SHORT = {"first plan [s]": "first", "best plan [s]": "best", "cost, solved": "cost", "cost, common": "common"}
 """The table's columns in a terminal, under shorter names; the files hold them all."""
+TIMES = ("first", "best")
+"""Those of them that hold times: in seconds, but in milliseconds where the cell says so."""
 INTERVAL = re.compile(r" \[[^]]*\]")
 """What a terminal leaves out of a cell."""
 
@@ -115,6 +117,8 @@ def _show(comparison: Any, records: list[RunRecord]) -> None:
         mine = [*SHORT, "gap to optimum", *comparison.metric_names(runs)]
         short = part[["planner", "coverage", "proven", *mine]].rename(columns=SHORT)
         short = short.map(lambda cell: INTERVAL.sub("", str(cell)))
+        for column in TIMES:
+            short[column] = short[column].map(with_unit)
         show(
             short,
             f"{suite}: {counted(blocks, 'block')}, {counted(count, 'buffer')}, {variant} "
@@ -124,3 +128,8 @@ def _show(comparison: Any, records: list[RunRecord]) -> None:
     failures = comparison.failure_table(runs)
     if len(failures):
         show(failures, "failures")
+
+
+def with_unit(cell: str) -> str:
+    """Return a time with its unit: the column's, in files, where the cell has none of its own."""
+    return f"{cell} s" if cell and cell[-1].isdigit() else cell

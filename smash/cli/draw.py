@@ -12,6 +12,7 @@ from smash.problem.extras import require
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import read_plan
 from smash.problem.model import PlanOptions
+from smash.problem.words import counted
 
 OUT = click.option(
     "--out",
@@ -102,4 +103,4 @@ def draw_plan_command(instance: Path, plan: Path, out: Path) -> None:
         raise SmashError(f"{plan}: the file holds no plan (status {filed.status})")
     shown, motion = motion_of(problem, filed)
     write_motion(motion, shown, out)
-    click.echo(f"{out}: {motion.steps} steps, cost {motion.cost}")
+    click.echo(f"{out}: {counted(motion.steps, 'step')}, cost {motion.cost}")

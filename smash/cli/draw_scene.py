@@ -10,6 +10,7 @@ from smash.cli import fail
 from smash.cli.choices import robot_option
 from smash.problem.extras import require
 from smash.problem.files.documents import require_writable
+from smash.problem.words import counted
 
 
 @click.command("draw-scene")
@@ -43,6 +44,6 @@ def command(scene: Path | None, robot: str | None, out: Path | None, height: int
     for problem in found:
         click.echo(problem)
     if found:
-        fail(f"scene {tabletop.name!r} breaks a condition in {len(found)} places", 3)
+        fail(f"scene {tabletop.name!r} breaks a condition in {counted(len(found), 'place')}", 3)
     piles = f"{height} blocks on stacks and {buffer_height} on buffers"
     click.echo(f"scene {tabletop.name!r} keeps both conditions for piles of up to {piles}")

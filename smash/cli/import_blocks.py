@@ -16,7 +16,7 @@ from smash.problem.blocksworld.problem import BlocksProblem
 from smash.problem.blocksworld.world import MOVE
 from smash.problem.errors import Infeasible, MalformedFile, SmashError, Unsupported
 from smash.problem.files.instances import write_instance
-from smash.problem.words import one_line
+from smash.problem.words import counted, one_line
 
 FAILURES = ((MalformedFile, "malformed"), (Infeasible, "infeasible"), (Unsupported, "unsupported"))
 
@@ -76,7 +76,7 @@ def _import_one(problem: BlocksProblem, stacks: int | None, buffers: int, name: 
     made = placed(problem, stacks, buffers, name)
     write_instance(made.instance, out)
     _say(problem, made)
-    click.echo(f"{_counted(len(made.instance.blocks), 'block')} in {out}")
+    click.echo(f"{counted(len(made.instance.blocks), 'block')} in {out}")
 
 
 def _say(problem: BlocksProblem, made: Placed) -> None:
@@ -108,7 +108,7 @@ def _warnings(problem: BlocksProblem, made: Placed) -> Iterator[str]:
     if problem.costs_differ:
         yield "its actions have costs of their own; here every action counts 1"
     if made.on_buffers:
-        yield f"{_counted(made.on_buffers, 'tower')} on buffers: more towers than stacks"
+        yield f"{counted(made.on_buffers, 'tower')} on buffers: more towers than stacks"
 
 
 def _import_all(importer: Importer, found: Sequence[Found], stacks: int | None, buffers: int, out: Path) -> None:
@@ -146,14 +146,14 @@ def _kind(error: SmashError) -> str:
 
 def _end(written: set[str], failures: Counter[str], out: Path) -> None:
     if written:
-        click.echo(f"{_counted(len(written), 'instance')} in {out}")
+        click.echo(f"{counted(len(written), 'instance')} in {out}")
     others = sorted(file.name for file in out.glob("*.json") if file.name not in written)
     if written and others:
         more = f" and {len(others) - 1} more" if len(others) > 1 else ""
         click.echo(f"{out} holds other files too, which belong to the set now: {others[0]}{more}", err=True)
     if failures:
         listed = ", ".join(f"{count} {kind}" for kind, count in failures.most_common())
-        fail(f"{_counted(sum(failures.values()), 'file')} not imported: {listed}", 2)
+        fail(f"{counted(sum(failures.values()), 'file')} not imported: {listed}", 2)
     if not written:
         fail("no PDDL problem was found, domains alone", 2)
 
@@ -165,7 +165,3 @@ def _shown(found: Sequence[Found]) -> Iterator[Found]:
         return
     with click.progressbar(found, label="importing", file=sys.stderr) as bar:
         yield from bar
-
-
-def _counted(count: int, what: str) -> str:
-    return f"{count} {what}" if count == 1 else f"{count} {what}s"

@@ -44,4 +44,4 @@ def command(instance: Path, plan: Path, problem: Path | None, domain: Path | Non
         raise RefusedPlan(f"{plan}: {verdict}")
     write_plan(found.plan, out)
     found.say()
-    click.echo(f"{found.counted(problem_here.costs)} in {out}")
+    click.echo(f"{found.told(problem_here.costs)} in {out}")

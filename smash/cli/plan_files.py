@@ -25,6 +25,7 @@ from smash.problem.files.plans import plan_from_document
 from smash.problem.model import Action, Instance, PlanOptions, State
 from smash.problem.plan import Plan
 from smash.problem.rules import Law
+from smash.problem.words import counted
 
 if TYPE_CHECKING:
     from smash_baselines.task import PddlTask
@@ -50,13 +51,13 @@ class PlanFile:
     placed: str | None = None
     ours: bool = False
 
-    def counted(self, costs: Costs) -> str:
+    def told(self, costs: Costs) -> str:
         """Return its length and its cost in words."""
         length = len(self.plan.actions or ())
-        words = _counted(length, "action")
+        words = counted(length, "action")
         if not costs.plain:
             words += f", {self.plan.cost} {costs.unit}"
-        return words if self.moves is None else f"{words}, {_counted(self.moves, 'move')} in its own domain"
+        return words if self.moves is None else f"{words}, {counted(self.moves, 'move')} in its own domain"
 
     def say(self) -> None:
         """Say what was added to the plan."""
@@ -176,13 +177,13 @@ def _from_task(instance: Instance, text: PlanText, task: PddlTask) -> PlanFile:
     at = 0
     steps = [step for step in text.steps if not (task.encoding.judged and step[0] in JUDGED)]
 
-    def counted() -> Iterator[PddlStep]:
+    def numbered() -> Iterator[PddlStep]:
         nonlocal at
         for at, step in enumerate(steps, start=1):  # noqa: B007 - it is read where a step is refused
             yield step
 
     try:
-        actions = tuple(actions_of(counted(), task))
+        actions = tuple(actions_of(numbered(), task))
     except IllegalAction as error:
         raise RefusedPlan(f"refused at step {at}: ({' '.join(steps[at - 1])}): {error}") from None
     right_steps = [step for step in steps_of(actions, task) if not (task.encoding.judged and step[0] in JUDGED)]
@@ -203,7 +204,3 @@ def _priced(instance: Instance, plan: Plan) -> Plan:
     actions: tuple[Action, ...] = plan.actions or ()
     cost = Law(instance).price(actions)
     return Plan(plan.instance, plan.planner, plan.options, plan.status, actions, stated_cost=cost)
-
-
-def _counted(count: int, what: str) -> str:
-    return f"{count} {what}" if count == 1 else f"{count} {what}s"

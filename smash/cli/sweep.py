@@ -92,7 +92,8 @@ def installed_runs(experiment: Experiment, base: Path) -> list[Run]:
     runs = [((run.job.planner, run.job.settings.command), run) for run in experiment_runs(experiment, base)]
     for planner, reason in lacking.items():
         count = sum(mine == planner for mine, _ in runs)
-        click.echo(one_line(f"{reason}; its {count} runs are left out, start again when it is there"), err=True)
+        words = f"{reason}; {counted(count, 'run')} left out, start again when it is there"
+        click.echo(one_line(words), err=True)
     return [run for planner, run in runs if planner not in lacking]
 
 

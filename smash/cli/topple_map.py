@@ -13,7 +13,7 @@ from smash.cli.choices import dask_option, engine_option, robot_option, say_engi
 from smash.cli.signals import stopped_by_signals
 from smash.problem.errors import SmashError
 from smash.problem.extras import EXECUTION, require
-from smash.problem.words import one_line
+from smash.problem.words import counted, one_line
 
 if TYPE_CHECKING:
     from smash.experiments.episodes.question import TrialRun
@@ -130,7 +130,8 @@ def command(
         click.echo(held)
     suggested = found.suggested_max_topple
     none = f"none is trusted: {ENOUGH} trials of a size or more, {TRUSTED:.0%} of them successful, are needed"
-    click.echo(f"{len(chosen)} trials in {out}; " + (f"suggested --max-topple {suggested}" if suggested else none))
+    said = f"suggested --max-topple {suggested}" if suggested else none
+    click.echo(f"{counted(len(chosen), 'trial')} in {out}; {said}")
 
 
 class _Said:

@@ -33,4 +33,4 @@ def command(instance: Path, plan: Path, problem: Path | None, domain: Path | Non
     if not verdict.accepted:
         fail(f"{plan}: {verdict}", 3)
     filed.say()
-    click.echo(f"accepted: {filed.counted(judged.costs)}")
+    click.echo(f"accepted: {filed.told(judged.costs)}")

@@ -11,6 +11,7 @@ from smash.problem.certificate import proven_bound, read_certificate
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import read_plan
 from smash.problem.plan import check_plan
+from smash.problem.words import counted
 
 
 @click.command("verify")
@@ -37,9 +38,9 @@ def command(instance: Path, plan: Path, certificate: Path) -> None:
     if filed.cost is not None and bound > filed.cost:
         fail(f"{certificate}: its bound {bound} is above the cost {filed.cost} of this legal plan", 3)
     if filed.cost == bound:
-        click.echo(f"verified: legal, and no plan has fewer than its {bound} actions")
+        click.echo(f"verified: legal, and no plan has fewer than its {counted(bound, 'action')}")
     elif filed.status != "optimal" and (filed.lower_bound is None or filed.lower_bound <= bound):
-        click.echo(f"verified: legal with {filed.cost} actions, and no plan has fewer than {bound}")
+        click.echo(f"verified: legal with {counted(filed.cost or 0, 'action')}, and no plan has fewer than {bound}")
     else:
         claimed = filed.cost if filed.status == "optimal" else filed.lower_bound
         fail(f"{certificate}: proves the lower bound {bound}, the plan claims {claimed}", 3)

@@ -25,6 +25,7 @@ from smash.problem.model import Action
 from smash.problem.plan import Incumbent, Plan
 from smash.problem.problem import Problem
 from smash.problem.rules import Verdict
+from smash.problem.words import counted
 
 if TYPE_CHECKING:
     from smash.execution.rehearsal import Rehearsal
@@ -279,7 +280,8 @@ class _Weighing:
         twice = [plan for plan, values in seen.items() if len(values) == len(SEEDS)] or list(seen)
         best = plans[min(twice, key=mean)]
         seconds = sum(seen[best.actions]) / len(seen[best.actions])
-        return replace(best, expected=replace(best.expected, seconds=seconds)), f"{len(seen)} plans rehearsed"
+        how = f"{counted(len(seen), 'plan')} rehearsed"
+        return replace(best, expected=replace(best.expected, seconds=seconds)), how
 
     def _climb(
         self,

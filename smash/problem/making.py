@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Container, Iterable, Iterator, Mapping
-from typing import Any
+from typing import Any, TypeGuard
 
 from smash.problem.costs import UNIT_COSTS, Costs
 from smash.problem.errors import MalformedFile
@@ -55,16 +55,18 @@ def make_instance(
     Raises:
         MalformedFile: with one line that says where and what is allowed.
     """
-    holding, fallen = tuple(carriers), tuple(table)
+    holding, fallen = _carriers(carriers, where), _names("table", table, where)
+    if not isinstance(costs, Costs):
+        raise MalformedFile(where, f"`costs`: {costs!r} is not allowed; a Costs is")
     piles = _piles("start", start, where, letters=blocks is not None)
     meant = _goal(goal, where)
-    named = [] if isinstance(buffers, int) else _names("buffers", buffers, where)
-    given = [] if isinstance(stacks, int) else _names("stacks", stacks, where)
+    named = [] if _is_number(buffers) else _names("buffers", buffers, where)
+    given = [] if _is_number(stacks) else _names("stacks", stacks, where)
     follow = dict.fromkeys(at for at in (*piles, *_locations(meant)) if at not in given and at not in named)
     locations = [*given, *follow]
-    if isinstance(stacks, int):
+    if _is_number(stacks):
         locations += _fresh("stacks", "s", stacks, (*locations, *named), where)
-    if isinstance(buffers, int):
+    if _is_number(buffers):
         named = _fresh("buffers", "u", buffers, locations, where)
     held = None if hand is None else _name("hand", hand, where)
     if blocks is None:
@@ -79,7 +81,7 @@ def make_instance(
         goal=meant,
         table=fallen,
         carriers=holding,
-        capacities=dict(capacities or {}),
+        capacities=dict(_mapping("capacities", capacities or {}, where, "actions to numbers")),
         costs=costs,
         hand=held,
     )
@@ -103,9 +105,21 @@ def _name(part: str, name: Any, where: str) -> str:
     return name
 
 
+def _is_number(given: Iterable[str] | int) -> TypeGuard[int]:
+    """Return whether a number of locations is given, not their names; True and False are none."""
+    return isinstance(given, int) and not isinstance(given, bool)
+
+
+def _carriers(carriers: Any, where: str) -> tuple[Carrier, ...]:
+    held = tuple(carriers) if isinstance(carriers, Iterable) else (carriers,)
+    if not all(isinstance(one, Carrier) for one in held):
+        raise MalformedFile(where, f"`carriers`: {carriers!r} is not allowed; a list of Carrier is")
+    return held
+
+
 def _names(part: str, names: Any, where: str) -> tuple[str, ...]:
     """Return names as a tuple; anything else is refused."""
-    if not isinstance(names, Iterable) or (isinstance(names, str) and part in ("stacks", "buffers")):
+    if not isinstance(names, Iterable) or (isinstance(names, str) and part in ("stacks", "buffers", "table")):
         raise MalformedFile(where, f"`{part}`: {names!r} is not allowed; a list of names is")
     return tuple(_name(part, name, where) for name in names)
 

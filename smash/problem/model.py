@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 
 from smash.problem.costs import UNIT_COSTS, Costs
 from smash.problem.errors import SmashError
+from smash.problem.words import counted
 
 TABLE = "table"
 """The source name of a pick from the table region; no location may be called so."""
@@ -181,8 +182,8 @@ class Instance:
         kind = type(self.goal).__name__
         held = "" if self.hand is None else f"{self.hand!r} in the hand, "
         return (
-            f"<Instance {self.name!r}: {_counted(len(self.blocks), 'block')} on {_counted(len(self.stacks), 'stack')} "
-            f"and {_counted(len(self.buffers), 'buffer')}, {held}{kind}>"
+            f"<Instance {self.name!r}: {counted(len(self.blocks), 'block')} on {counted(len(self.stacks), 'stack')} "
+            f"and {counted(len(self.buffers), 'buffer')}, {held}{kind}>"
         )
 
     def _repr_svg_(self) -> str | None:
@@ -203,10 +204,6 @@ class Instance:
         return arrangements_svg([start, goal], self.blocks)
 
 
-def _counted(count: int, what: str) -> str:
-    return f"{count} {what}" if count == 1 else f"{count} {what}s"
-
-
 def shown_locations(instance: Instance) -> tuple[str, ...]:
     """Return the locations that a picture of the start shows: all but the empty buffers."""
     return instance.stacks + tuple(buffer for buffer in instance.buffers if instance.start[buffer])
@@ -215,7 +212,7 @@ def shown_locations(instance: Instance) -> tuple[str, ...]:
 def idle_remark(instance: Instance) -> str:
     """Return how many empty buffers a picture of the start leaves out, in words; nothing where there is none."""
     idle = len(instance.locations) - len(shown_locations(instance))
-    return f" ({_counted(idle, 'empty buffer')} beside)" if idle else ""
+    return f" ({counted(idle, 'empty buffer')} beside)" if idle else ""
 
 
 def shown_goal(instance: Instance) -> tuple[dict[str, tuple[str, ...]], tuple[str, ...], str]:

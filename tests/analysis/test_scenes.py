@@ -1,7 +1,7 @@
 """What the records of episodes tell of scene, noise and pace."""
 
 import pytest
-from smash_analysis.tables.scenes import Conditions, scene_words
+from smash_analysis.tables.scenes import Conditions, scene_options, scene_words
 
 from smash.experiments.episodes.series import scene_name
 from smash.records.scenes import MixedScenes, require_one_scene
@@ -22,6 +22,18 @@ from smash.records.scenes import MixedScenes, require_one_scene
 )
 def test_words_of_a_scene_are_read(scene, found):
     assert scene_words(scene) == found
+
+
+@pytest.mark.parametrize(
+    ("scene", "options"),
+    [
+        (None, ""),
+        ("default pose=3mm,yaw=2.5deg pace=0.1", "--noise pose=3mm,yaw=2.5deg --pace 0.1"),
+        ("my table exact", "--scene 'my table.toml' --noise pose=0mm"),
+    ],
+)
+def test_the_options_that_a_scene_comes_from_are_said(scene, options):
+    assert scene_options(scene) == options
 
 
 def test_words_that_the_records_get_are_read():

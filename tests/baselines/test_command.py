@@ -304,6 +304,19 @@ class TestCommandLineOfSmash:
         assert record.details["encoding"] == "topple-chain"
         assert Job.from_document(json.loads(json.dumps(run.job.document()))) == run.job
 
+    def test_a_run_whose_only_plan_the_law_refuses_says_so(self, tmp_path):
+        command = program(tmp_path, "pathlib.Path('sas_plan').write_text('(fly b01)\\n')")
+        report = run_isolated(Job("command", Problem(move()), Settings(command=command), 10.0))
+        assert report.outcome == "refused"
+        assert report.reason == "sas_plan: no line says a step of the domain: '(fly b01)' is the first"
+        assert report.plan.status == "unknown"
+        result = self.run(tmp_path, "--command", command)
+        assert getattr(result.exception, "exit_code", result.exit_code) == 7
+
+    def test_an_empty_file_is_no_plan_that_could_be_refused(self, tmp_path):
+        command = program(tmp_path, "pathlib.Path('sas_plan').write_text('; nothing\\n')")
+        assert run_isolated(Job("command", Problem(move()), Settings(command=command), 10.0)).outcome == "budget-spent"
+
     def test_a_guardian_ends_what_a_program_starts(self, tmp_path):
         body = "import subprocess\nsubprocess.Popen(['sleep', '98.7'], start_new_session=True)\ntime.sleep(99)"
         settings = Settings(command=program(tmp_path, body))

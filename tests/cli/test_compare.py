@@ -5,6 +5,8 @@ import sys
 
 import pytest
 
+from smash.cli.compare import with_unit
+
 
 @pytest.mark.usefixtures("third_party")
 def test_planners_are_run_and_compared(tower_file, tmp_path):
@@ -17,7 +19,7 @@ def test_planners_are_run_and_compared(tower_file, tmp_path):
         list(map(str, [*command, "--out", tmp_path / "out"])), capture_output=True, text=True, timeout=110
     )
     assert ended.returncode == 0, ended.stderr
-    assert "pip install luck; its 1 runs are left out" in ended.stderr
+    assert "pip install luck; 1 run left out" in ended.stderr
     assert "ValueError: no luck" in ended.stdout
     assert "Contradictions" in (tmp_path / "out" / "comparison" / "comparison.md").read_text()
 
@@ -49,6 +51,11 @@ def test_records_of_another_comparison_are_kept_and_left_out_of_the_table(tower_
     assert "bare" in compare("bare").stdout
     assert "sound" not in (tmp_path / "out" / "comparison" / "comparison.csv").read_text()
     assert len((tmp_path / "out" / "runs.jsonl").read_text().splitlines()) == 2
+
+
+@pytest.mark.parametrize(("cell", "shown"), [("0.58", "0.58 s"), ("4.40 ms", "4.40 ms"), ("–", "–")])
+def test_a_time_on_the_terminal_has_its_unit(cell, shown):
+    assert with_unit(cell) == shown
 
 
 @pytest.mark.parametrize("wrong", [["--planner", "nobody"], ["--planner", "greedy", "--variant", "x"], []])

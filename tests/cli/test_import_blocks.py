@@ -60,14 +60,20 @@ def test_a_folder_becomes_a_table_in_three_commands(folder, tmp_path):
 
 def test_what_cannot_be_read_is_a_line_each_and_a_count_by_kind(folder, tmp_path):
     (folder / "bad.pddl").write_text("(define (problem")
+    (folder / "gone.pddl").symlink_to("nowhere")
     (folder / "two.pddl").write_text(FOUR.problem(TOWERS, "(or (on a b) (on b a))"))
     (folder / "never.pddl").write_text(FOUR.problem(TOWERS, "(and (on a b) (on a c))"))
     ended = smash("import-blocks", folder, "--out", tmp_path / "set")
     assert ended.returncode == 2
     assert len(list((tmp_path / "set").glob("*.json"))) == 6
     *lines, last = ended.stderr.splitlines()
-    assert [line.split(":")[1].rpartition("/")[2] for line in lines] == ["bad.pddl", "never.pddl", "two.pddl"]
-    assert last == "smash: 3 files not imported: 1 malformed, 1 infeasible, 1 unsupported"
+    assert [line.split(":")[1].rpartition("/")[2] for line in lines] == [
+        "bad.pddl",
+        "gone.pddl",
+        "never.pddl",
+        "two.pddl",
+    ]
+    assert last == "smash: 4 files not imported: 2 malformed, 1 infeasible, 1 unsupported"
 
 
 def test_several_files_are_called_after_them_and_told_apart(folder, tmp_path):
@@ -106,7 +112,7 @@ def test_towers_stand_tallest_first_on_stacks_then_on_buffers(folder, tmp_path):
 def test_too_few_places_are_refused_with_the_flags_that_fit(folder, tmp_path):
     ended = smash("import-blocks", folder / "p1.pddl", "--stacks", 1, "--buffers", 1, "--out", tmp_path / "p.json")
     assert ended.returncode == 2
-    assert "`--stacks 3`, or `--stacks 1 --buffers 2`, would fit" in ended.stderr
+    assert "3 towers at the start, 2 places; `--stacks 3`, or `--stacks 1 --buffers 2`, would fit" in ended.stderr
     assert not (tmp_path / "p.json").exists()
 
 

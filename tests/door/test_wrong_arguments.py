@@ -28,6 +28,19 @@ OTHER = smash.make_instance(start={"s1": ["a", "b"]}, goal={"s1": ["b", "a"]}, b
         lambda: smash.generate("multi", 4, seed="x"),
         lambda: smash.generate("multi", 4, seed=-1),
         lambda: smash.make_instance(start={"s1": ["a"]}, goal={"s2": ["a"]}, name=5),
+        *(
+            lambda given=given: smash.make_instance({"s1": ["a"]}, {"s2": ["a"]}, **given)
+            for given in (
+                {"table": 5},
+                {"table": "a"},
+                {"carriers": 5},
+                {"carriers": ["a"]},
+                {"capacities": [1]},
+                {"costs": {"pick": 2}},
+                {"buffers": True},
+                {"stacks": False},
+            )
+        ),
         lambda: smash.compare([INSTANCE], [None]),
         lambda: smash.draw(OTHER, smash.plan(INSTANCE, "greedy", budget=1)),
     ],

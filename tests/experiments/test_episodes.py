@@ -16,7 +16,7 @@ from smash.experiments.episodes.series import episode_runs, run_episode, target_
 from smash.experiments.episodes.simulation import Simulation
 from smash.experiments.isolation.hearing import done
 from smash.problem import PositionsGoal, make_instance
-from smash.problem.errors import SmashError
+from smash.problem.errors import SmashError, Unsupported
 from smash.problem.extras import is_there
 from smash.records.episodes import Episode
 from smash.records.files import EPISODES
@@ -75,6 +75,15 @@ def test_limits_hold_for_episodes_as_for_planners(results, limits, said):
     ended = done(Simulation(episode_runs(results, [1], ["open"])[0], **limits))
     assert ended.answer is None
     assert said in ended.reason
+
+
+@simulated
+def test_a_machine_without_the_engine_has_no_episode_to_record(results, tmp_path, monkeypatch):
+    (tmp_path / "mujoco.py").write_text("raise ModuleNotFoundError('No module named mujoco', name='mujoco')\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    run = msgspec.structs.replace(episode_runs(results, [1], ["open"])[0], engine="mujoco")
+    with pytest.raises(Unsupported, match=r"needs mujoco: pip install 'smash-testbed\[mujoco\]'"):
+        run_episode(run)
 
 
 def unmeasured(episode):

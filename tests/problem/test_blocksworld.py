@@ -197,6 +197,7 @@ def test_what_no_arrangement_fulfils_and_no_format_holds_is_infeasible(text, wor
         (problem(goal="(red a)"), "(red a) is not known without its domain"),
         (problem(more="(:constraints (always (clear a)))"), "constraints"),
         (problem(more="(:metric minimize (total-time))"), "a metric of total-time"),
+        (problem(more="(:metric maximize (total-cost))"), "as large as can be"),
         (problem(init="(ontable a) (on b a) (clear b) (handempty) (at 3 (clear a))"), "a fact of a later time"),
         (problem(init="(ontable a) (on b a) (clear b) (handempty) (= (where a) b)"), "whose value is an object"),
         (problem(init="(ontable a) (on b a) (clear b) (oneof (handempty) (holding a))"), "a start that is not known"),

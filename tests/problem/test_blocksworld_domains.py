@@ -128,6 +128,17 @@ def test_actions_that_some_blocks_are_not_given_are_no_blocks_world():
         read(dress.domain(), problem)
 
 
+def test_an_action_for_blocks_of_one_type_alone_is_not_supported():
+    dress = Dress("four")
+    domain = dress.domain().replace("(:predicates", "(:types red blue) (:predicates", 1)
+    domain = domain.replace("(:action pick-up :parameters (?x )", "(:action pick-up :parameters (?x - red)", 1)
+    assert "?x - red" in domain
+    problem = dress.problem(TOWERS, "(and)").replace("(:objects a b c d", "(:objects a c d - red b - blue", 1)
+    assert "b - blue" in problem
+    with pytest.raises(Unsupported, match="does not take 'b', by its type"):
+        read(domain, problem)
+
+
 def test_several_hands_are_named():
     dress = Dress("four", typed=True, extras=frozenset({"hand-object"}))
     problem = (

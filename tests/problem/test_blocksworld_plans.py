@@ -36,6 +36,8 @@ def come_in(instance, text):
         "0.000: (unstack b a) [0.001]\n0.001: (put-down b) [0.001]\n0.002: (pick-up a) [1]\n0.003: (stack a b)",
         "3: (stack a b)\n0: (unstack b a)\n1: (put-down b)\n2: (pick-up a)",
         "SequentialPlan:\n    unstack(b, a)\n    put-down(b)\n    pick-up(a)\n    stack(a, b)\n",
+        "SequentialPlan([unstack(b, a), put-down(b), pick-up(a), stack(a, b)])",
+        "[unstack(b, a), put-down(b), pick-up(a), stack(a, b)]\n",
         "unstack(b,a)\nput_down(b)\npickup( a )\nstack( a , b )",
     ],
 )
@@ -48,7 +50,8 @@ def test_the_spellings_of_other_planners_are_read(text):
 
 
 @pytest.mark.parametrize(
-    "text", ["(unstack b a", "unstack b a", "(unstack b a) (put-down b)", "nonsense", "()", "(a (b))", "x: (a b)"]
+    "text",
+    ["(unstack b a", "unstack b a", "(unstack b a) (put-down b)", "nonsense", "()", "(a (b))", "x: (a b)", "[a(b), c"],
 )
 def test_what_is_no_step_is_malformed_with_its_line(text):
     with pytest.raises(MalformedFile, match=r"line 2: .* is no step"):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 import pandas as pd
@@ -15,6 +15,7 @@ from smash_analysis.report.blocks import Block, Listing, TableBlock, Words
 from smash_analysis.report.growth import SIZES_FOR_CURVES
 from smash_analysis.report.sources import Source
 from smash_analysis.statistics.conditions import condition_lines
+from smash_analysis.tables.scenes import scene_options
 
 
 def appendix(source: Source) -> list[Block]:
@@ -90,9 +91,7 @@ def commands(source: Source) -> list[str]:
     if source.runs:
         lines += [_runs(source, path), f"smash records check {path}"]
     if source.episodes:
-        seeds = max(record.seed for record in source.episodes) + 1
-        policies = " ".join(f"--policy {policy}" for policy in dict.fromkeys(r.policy for r in source.episodes))
-        lines.append(f"smash episodes {path} --seeds {seeds} {policies}{engine}")
+        lines += _episodes(source.episodes, f"smash episodes {path}", engine)
     if source.trials:
         cut, most, seed = (
             max(getattr(trial, name) for trial in source.trials) for name in ("height", "falling", "seed")
@@ -105,6 +104,17 @@ def commands(source: Source) -> list[str]:
         )
     lines += [f"python -m smash_analysis.{module} {path}    # {words}" for module, words in _modules(source)]
     return lines
+
+
+def _episodes(records: Sequence[EpisodeRecord], command: str, engine: str) -> Iterator[str]:
+    """Yield a command for each scene, noise and pace that episodes were carried out under."""
+    by_scene: dict[str | None, list[EpisodeRecord]] = {}
+    for record in records:
+        by_scene.setdefault(record.scene, []).append(record)
+    for scene, part in by_scene.items():
+        seeds = max(record.seed for record in part) + 1
+        policies = " ".join(f"--policy {policy}" for policy in dict.fromkeys(record.policy for record in part))
+        yield " ".join(filter(None, [command, f"--seeds {seeds} {policies}{engine}", scene_options(scene)]))
 
 
 def _modules(source: Source) -> Iterator[tuple[str, str]]:

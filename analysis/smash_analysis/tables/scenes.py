@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import degrees
@@ -26,7 +27,9 @@ SEVERAL = "Scenes, noises and paces are not put together: each stands behind the
 """Of a page whose episodes went through `by_scene`, where there are several."""
 _NUMBER = r"\d+(?:\.\d+)?(?:e-?\d+)?"
 _AMOUNT = rf"(?:{'|'.join(SCALES)})={_NUMBER}(?:mm|deg|%)"
-_NOISE = rf"exact|{_AMOUNT}(?:,{_AMOUNT})*"
+EXACT = "exact"
+"""What the words of a scene say where its own noise was taken away."""
+_NOISE = rf"{EXACT}|{_AMOUNT}(?:,{_AMOUNT})*"
 _WORDS = re.compile(rf"(?P<base>.+?)(?: (?P<noise>{_NOISE}))?(?: pace=(?P<pace>{_NUMBER}))?", re.DOTALL)
 
 
@@ -64,10 +67,20 @@ def scene_words(scene: str | None) -> Conditions:
     noise: dict[str, float] | None = {}
     if words is None:
         noise = {} if base == DEFAULT else None
-    elif words != "exact":
+    elif words != EXACT:
         amounts = (word.split("=") for word in words.split(","))
         noise = {kind: round(float(amount.rstrip("mdeg%")), 2) for kind, amount in amounts}
     return Conditions(base, noise, None if pace is None else (float(pace), float(pace)))
+
+
+def scene_options(scene: str | None) -> str:
+    """Return the options of `smash episodes` that make the `scene` of a record; a scene file by its name alone."""
+    found = _WORDS.fullmatch(scene or DEFAULT)
+    assert found is not None  # a base may be any text
+    named = [] if found["base"] == DEFAULT else ["--scene", f"{found['base']}.toml"]
+    named += ["--noise", "pose=0mm" if found["noise"] == EXACT else found["noise"]] if found["noise"] else []
+    named += ["--pace", found["pace"]] if found["pace"] else []
+    return shlex.join(named)
 
 
 def conditions(records: Sequence[EpisodeRecord]) -> list[Conditions]:

@@ -220,7 +220,8 @@ class _Plans:
             self._seen[file] = state
             text = file.read_text(encoding="utf-8", errors="replace")
             written = self._run.log.elapsed - max(0.0, time.time() - with_stat.st_mtime)
-            doubt = self._take(steps_in(text, self.actions), max(0.0, written))
+            steps = steps_in(text, self.actions)
+            doubt = self._take(steps, max(0.0, written)) if steps else _no_step(text)
             self._doubts.pop(file, None)
             if doubt is not None:
                 self._doubts[file] = f"{file.name}: {doubt}"
@@ -265,3 +266,9 @@ class _Plans:
             return str(verdict)
         run.log.offer(actions, run.origin, seconds)
         return None
+
+
+def _no_step(text: str) -> str | None:
+    """Return what stands in a file without a step in place of a plan; None where nothing does."""
+    first = next((line.strip() for line in text.splitlines() if line.split(";", 1)[0].strip()), None)
+    return None if first is None else f"no line says a step of the domain: {first[:60]!r} is the first"

@@ -24,11 +24,12 @@ _FLAT = rf"\[\s*+(?:{_SCALAR}\s*+(?:,\s*+{_SCALAR}\s*+)*+)?+\]"
 LISTS = re.compile(rf"\[\s*+(?:{_FLAT}\s*+(?:,\s*+{_FLAT}\s*+)*+)?+\]")
 """A JSON list of flat lists, also with the quotes of Python; nothing is tried twice."""
 
-_BREAK = r"""[\s,()\[\]"'`*]"""
-_WORD = r"""[^\s,()\[\]"'`*]"""
+_BREAK = r"""[\s,()\[\]"'`*|]"""
+_WORD = r"""[^\s,()\[\]"'`*|]"""
 _BETWEEN = rf"(?:(?:from|off|on|onto|to|into|at|height|->|=>|→){_BREAK}++)*"
 WORDS = re.compile(
-    rf"[\W_]*+(?:\d++[.):]*+[\W_]*+)?+(?:(?:and|then)[\W_]++)*+(?P<name>{'|'.join(NAMES)}){_BREAK}++"
+    rf"[\W_]*+(?:(?:step|action|move)[\W_]++)?+(?:\d++[.):]*+[\W_]*+)?+"
+    rf"(?:(?:and|then|first|next|finally)[\W_]++)*+(?P<name>{'|'.join(NAMES)}){_BREAK}++"
     rf"(?P<first>{_WORD}++){_BREAK}++{_BETWEEN}(?P<second>{_WORD}++)",
     re.IGNORECASE,
 )

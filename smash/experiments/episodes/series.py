@@ -150,6 +150,9 @@ def run_episode(run: EpisodeRun, stop: Event | None = None) -> EpisodeRecord | N
     """Run one episode in processes of its own; None where `stop` was set before it ended.
 
     The record's `episode` is None where those processes ended badly.
+
+    Raises:
+        SmashError: where no episode can be run on this machine.
     """
     if stop is not None and stop.is_set():
         return None

@@ -13,6 +13,7 @@ from smash.experiments.episodes.executors import executor_of
 from smash.experiments.episodes.question import EpisodeRun, TrialRun
 from smash.experiments.episodes.simulation import Simulation
 from smash.experiments.isolation.voice import Voice, to_its_end
+from smash.problem.extras import MissingExtra, missing_extra
 from smash.problem.files.instances import instance_from_document
 from smash.records.episodes import Episode, episode_text
 from smash.records.trials import Trial
@@ -43,7 +44,14 @@ def simulate(work: Simulation, pipe: int) -> NoReturn:
 
 def _simulate(question: EpisodeRun | TrialRun, voice: Voice) -> None:
     voice.say(kind="solving")
-    voice.say(kind="result", answer=_answer(question))
+    try:
+        answer = _answer(question)
+    except (ModuleNotFoundError, MissingExtra) as error:
+        lacking = error if isinstance(error, MissingExtra) else missing_extra(error, "a simulation")
+        if lacking is None:
+            raise
+        return voice.say(kind="failed", outcome="not-installed", reason=str(lacking))
+    return voice.say(kind="result", answer=answer)
 
 
 def _answer(question: EpisodeRun | TrialRun) -> Any:

@@ -217,9 +217,18 @@ class _Heard:
             status: Status = self._answer["status"]
             if status == "infeasible" and claimed_infeasible(self._job.problem) is None:
                 return status, f"a claim of planner {self._job.planner!r}: nothing here decides it"
+            if status == "unknown" and (refused := _refused_plans(self._answer)):
+                return "refused", refused[0]
             return ("budget-spent" if status == "unknown" else status), ""
         if interrupted:
             return "interrupted", "stopped from outside"
         if self._ended is not None:
             return self._ended["outcome"], self._ended["reason"]
         return "crashed", "the process that guards the run " + ("stood still" if self.silent else "was killed")
+
+
+def _refused_plans(answer: Mapping[str, Any]) -> list[str]:
+    """Return why the plans of an engine behind the planner were none, which the planner has noted itself."""
+    details = answer.get("details")
+    noted = details.get("refused") if isinstance(details, Mapping) else None
+    return [why for why in noted if isinstance(why, str)] if isinstance(noted, list) else []

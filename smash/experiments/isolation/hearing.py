@@ -15,9 +15,12 @@ from smash.experiments.isolation.job import longest
 from smash.experiments.isolation.lines import Lines
 from smash.experiments.isolation.starting import Guardian, guardian_of
 from smash.experiments.isolation.work import Work
+from smash.problem.errors import SmashError, Unsupported
 
 _PATIENCE = 20.0
 """Seconds that a guardian has to say how work ended that was stopped."""
+HERE_ALONE: Mapping[str, type[SmashError]] = {"not-installed": Unsupported, "malformed": SmashError}
+"""Outcomes that speak of the machine and not of the work, which another one may do -> what is raised."""
 
 
 class Hearing(Protocol):
@@ -87,11 +90,17 @@ def done(work: Work, stop: Event | None = None) -> Done:
     """Have work of this package's own done in processes of its own, within its limits, and return its answer.
 
     Planners are heard by `smash.experiments.isolation.caller`, which believes them nothing.
+
+    Raises:
+        Unsupported: where something that it needs is not installed on this machine.
+        SmashError: where nothing can be written here.
     """
     heard = _Answer(monotonic() + longest(work.budget))
     hear_out(work, heard, stop)
     if heard.answer is None and stop is not None and stop.is_set():
         return Done(None, "stopped from outside", interrupted=True)
+    if heard.unable is not None:
+        raise heard.unable(heard.reason)
     guard = "the process that guards it " + ("stood still" if heard.silent else "was killed")
     return Done(heard.answer, "" if heard.answer is not None else heard.reason or guard)
 
@@ -104,6 +113,7 @@ class _Answer:
         self.silent = False
         self.answer: Mapping[str, Any] | None = None
         self.reason = ""
+        self.unable: type[SmashError] | None = None
 
     def hear(self, line: bytes) -> bool:
         """Take one line."""
@@ -117,6 +127,7 @@ class _Answer:
                 self.answer = message["answer"]
             case "failed":
                 self.reason = message["reason"]
+                self.unable = HERE_ALONE.get(message["outcome"])
             case "ended":
                 if message["outcome"] == "memory":
                     self.answer = None

@@ -22,6 +22,7 @@ from smash.experiments.weighing import run_job
 from smash.problem.errors import Interrupted, SmashError, Unsupported
 from smash.problem.files.instances import instance_document
 from smash.problem.plan import Plan
+from smash.problem.words import counted
 from smash.records.files import R
 from smash.records.record import Record
 from smash.records.runs import RUN_FORMAT, RunRecord, VerdictField, instance_hash, plan_fields
@@ -169,7 +170,7 @@ def sweep(
     if stop.is_set():
         raise Interrupted("interrupted; every finished run is recorded, start again to do the rest")
     if lost:
-        raise WorkersLost(f"{len(lost)} runs were lost ({lost[0]}); start again to do them")
+        raise WorkersLost(f"lost {counted(len(lost), 'run')} ({lost[0]}); start again to do what is left")
 
 
 def _collect(

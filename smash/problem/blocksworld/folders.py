@@ -48,7 +48,12 @@ def found_files(given: Iterable[Path]) -> list[Found]:
         if not path.is_dir():
             found.setdefault(path, Found(path, path.parent, path.stem))
             continue
-        files = sorted(file for file in path.rglob("*") if file.suffix.lower() == ".pddl" and file.is_file())
+        # A link to nowhere is named where it is read.
+        files = sorted(
+            file
+            for file in path.rglob("*")
+            if file.suffix.lower() == ".pddl" and (file.is_file() or (file.is_symlink() and not file.exists()))
+        )
         if not files:
             raise MalformedFile(str(path), "the folder holds no PDDL file (*.pddl)")
         for file in files:

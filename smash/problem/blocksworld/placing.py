@@ -8,6 +8,7 @@ from smash.problem.blocksworld.problem import BlocksProblem
 from smash.problem.errors import SmashError
 from smash.problem.making import make_instance
 from smash.problem.model import Instance
+from smash.problem.words import counted
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,7 @@ def placed(
     if len(towers) > stack_count + buffer_count:
         more = len(towers) - stack_count
         raise SmashError(
-            f"{problem.where}: {len(towers)} towers at the start, {stack_count + buffer_count} places; "
+            f"{problem.where}: {len(towers)} towers at the start, {counted(stack_count + buffer_count, 'place')}; "
             f"`--stacks {len(towers)}`, or `--stacks {stack_count} --buffers {more}`, would fit"
         )
     stack_names = [f"p{number}" for number in range(1, stack_count + 1)]

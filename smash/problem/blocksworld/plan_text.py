@@ -19,6 +19,9 @@ _STEP = re.compile(
     \s*(?:;.*)?""",
     re.VERBOSE,
 )
+_CALL = re.compile(rf"({_NAME})\s*\(([^()]*)\)")
+_CALLS = re.compile(rf"(?:SequentialPlan\()?\[(?P<calls>{_NAME}\([^()]*\)(?:, {_NAME}\([^()]*\))*)?\]\)?")
+"""unified-planning's plan on one line: `[stack(a, b), pick-up(c)]`."""
 _COST = re.compile(r";\s*cost\s*=\s*(\d+)\s*(\((?:unit|general) cost\))?", re.IGNORECASE)
 _HEADING = re.compile(r"(?:SequentialPlan|TimeTriggeredPlan):?", re.IGNORECASE)
 _LINE_END = re.compile(r"\r\n|\r|\n")
@@ -57,6 +60,10 @@ def parse_plan(text: str, where: str) -> PlanText:
                 cost, unit = int(said[1]), (said[2] or "").lower() == "(unit cost)"
             continue
         match = _STEP.fullmatch(bare)
+        listed = _CALLS.fullmatch(bare) if match is None else None
+        if listed is not None:
+            timed += [(timed[-1][0] if timed else 0.0, step) for step in _called(listed["calls"] or "")]
+            continue
         if match is None:
             allowed = "`(action a b)`, `0: (action a b)[1]` or `action(a, b)` is allowed"
             raise MalformedFile(where, f"line {number}: {shortened(bare)!r} is no step; {allowed}")
@@ -65,6 +72,11 @@ def parse_plan(text: str, where: str) -> PlanText:
         timed.append((float(match["time"] or (timed[-1][0] if timed else 0)), step))
     timed.sort(key=lambda entry: entry[0])
     return PlanText(tuple(step for _, step in timed), cost, unit)
+
+
+def _called(calls: str) -> list[PddlStep]:
+    """Return the steps of `stack(a, b), pick-up(c)`."""
+    return [(name.lower(), *listed.lower().replace(",", " ").split()) for name, listed in _CALL.findall(calls)]
 
 
 def plan_lines(steps: Iterable[PddlStep], cost: int, *, unit: bool) -> str:

@@ -157,7 +157,10 @@ class _Reader:
         for key in (":init", ":goal"):
             if key not in sections:
                 self.refuse(f"the section `{key}` is missing")
-        measured = next((word for word in _words(sections.get(":metric", [])) if word in TIMES), None)
+        metric = sections.get(":metric", [])
+        if metric[:1] == ["maximize"]:
+            self.unsupported("a metric that is to be as large as can be, maximize (`:metric`)")
+        measured = next((word for word in _words(metric) if word in TIMES), None)
         if measured is not None:
             self.unsupported(f"a metric of {measured} (`:metric`)")
         return sections

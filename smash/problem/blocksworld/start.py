@@ -10,7 +10,7 @@ from smash.problem.blocksworld.formula import Atom
 from smash.problem.blocksworld.reading import Reading
 from smash.problem.blocksworld.sexpr import show
 from smash.problem.blocksworld.world import Arrangement, Meaning
-from smash.problem.errors import Infeasible, MalformedFile
+from smash.problem.errors import Infeasible, MalformedFile, Unsupported
 
 
 def start_of(reading: Reading, blocks: Sequence[str], facts: Sequence[Atom], where: str) -> Arrangement:
@@ -25,6 +25,7 @@ def start_of(reading: Reading, blocks: Sequence[str], facts: Sequence[Atom], whe
     Raises:
         MalformedFile: where they contradict themselves, or do not say where a block is.
         Infeasible: where no action applies to the start.
+        Unsupported: where an object that the facts call a block is none to some action.
     """
     return _Start(reading, blocks, where).arrangement(facts)
 
@@ -92,9 +93,13 @@ class _Start:
         self.ontable[self._block(about[0], atom)] = None
 
     def _block(self, name: str, atom: Atom) -> str:
-        if name not in self.known:
+        if name in self.known:
+            return name
+        if self.reading.by_name:
             self.refuse(f"{show(list(atom))}: {name!r} is no block")
-        return name
+        raise Unsupported(
+            f"{self.where}: `:init`: {show(list(atom))}: some action does not take {name!r}, by its type; not supported"
+        )
 
     def _in_hand(self) -> str | None:
         """Return the held block: the one that is said to be, or, where nothing says so, the one that is nowhere."""
