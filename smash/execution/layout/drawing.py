@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from smash.execution.actions.topple import strip
-from smash.execution.layout.conditions import FALLING
+from smash.execution.layout.conditions import FALLING, falling
 from smash.execution.scene.tabletop import Slot, Tabletop
 
 REACH = (0.30, 0.65)
@@ -30,9 +30,9 @@ def draw(tabletop: Tabletop, path: Path) -> None:
     for index, slot in enumerate(tabletop.stacks, start=1):
         for rank, direction in enumerate(slot.directions):
             _strip(axis, slot, direction, tabletop.side, preferred=rank == 0)
-        _slot(axis, slot, tabletop.side, STACK, f"s{index}")
+        _slot(axis, slot, tabletop.side, STACK, _named(f"s{index}", slot))
     for index, slot in enumerate(tabletop.buffers, start=1):
-        _slot(axis, slot, tabletop.side, BUFFER, f"u{index}")
+        _slot(axis, slot, tabletop.side, BUFFER, _named(f"u{index}", slot))
     for index, slot in enumerate(tabletop.stations, start=1):
         _station(axis, slot, tabletop, f"t{index}")
     axis.set_aspect("equal")
@@ -47,7 +47,7 @@ def draw(tabletop: Tabletop, path: Path) -> None:
             Line2D([], [], marker="o", color="#3b3f45", linestyle="none", markersize=10, label="robot's base"),
             Patch(color=STACK, label="stack"),
             Patch(color=BUFFER, label="buffer"),
-            Patch(color=STRIP, alpha=0.35, label=f"landing strip, {FALLING} blocks"),
+            Patch(color=STRIP, alpha=0.35, label=f"landing strip, {_fallen(tabletop)}"),
             *second,
             Patch(color="#eef3ee", label="reached from above at all heights"),
         ],
@@ -58,6 +58,13 @@ def draw(tabletop: Tabletop, path: Path) -> None:
     figure.savefig(path, dpi=150)
 
 
+def _fallen(tabletop: Tabletop) -> str:
+    """How many blocks the strips are drawn for."""
+    made_for = {falling(slot) for slot in tabletop.stacks if slot.directions} or {FALLING}
+    least, most = min(made_for), max(made_for)
+    return f"{most} block{'s' if most > 1 else ''}" if least == most else f"{least} to {most} blocks"
+
+
 def _station(axis: Any, slot: Slot, tabletop: Tabletop, name: str) -> None:
     from matplotlib.patches import Polygon
 
@@ -66,6 +73,11 @@ def _station(axis: Any, slot: Slot, tabletop: Tabletop, name: str) -> None:
     corners = _corners(slot.x, slot.y, slot.angle, width / 2, length / 2)
     axis.add_patch(Polygon(corners, facecolor="none", edgecolor=TRAY, linewidth=1.5, zorder=2))
     axis.text(slot.x, slot.y, name, ha="center", va="center", fontsize=8, zorder=4)
+
+
+def _named(name: str, slot: Slot) -> str:
+    """What a slot is called, and how high its pile may be where the scene says so."""
+    return name if slot.highest is None else f"{name}: {slot.highest}"
 
 
 def _slot(axis: Any, slot: Slot, side: float, colour: str, name: str) -> None:
@@ -79,7 +91,7 @@ def _slot(axis: Any, slot: Slot, side: float, colour: str, name: str) -> None:
 def _strip(axis: Any, slot: Slot, direction: str, side: float, preferred: bool) -> None:
     from matplotlib.patches import Polygon
 
-    area = strip(FALLING)
+    area = strip(falling(slot))
     half = (area.length - side) / 2
     x, y = slot.point(side + half, 0.0, direction)
     corners = _corners(x, y, slot.heading(direction), half, area.half_width)

@@ -12,6 +12,7 @@ from hashlib import sha256
 from math import cos, hypot, pi, sin
 
 from smash.execution.scene.block_pose import QUARTER, BlockPose
+from smash.execution.scene.reach import HEIGHTS, LEVEL, highest
 from smash.execution.scene.tray import Tray
 from smash.problem.errors import SmashError
 from smash.problem.model import Instance, OnGoal
@@ -27,9 +28,6 @@ DIRECTIONS: Mapping[str, float] = {
 SLOWEST = 0.01
 """The least share of the arm's limits that motions may use: an episode would take an hour of simulated time."""
 
-HIGHEST = 12
-"""The most blocks of 4.5 cm that the arm can stack from above within its joint limits; other sizes in proportion."""
-
 
 class DoesNotFit(SmashError):
     """An instance that the scene has no room for."""
@@ -43,11 +41,15 @@ class Slot:
         radius: Distance from the robot's base [m].
         angle: Bearing, also the direction of the frame's x axis [rad].
         directions: Names of the directions it may be toppled in, preferred first; none at a buffer.
+        highest: The most blocks of a pile that the layout was made for; None where it says nothing of it.
+        falling: The most blocks that its strips were made for, the same.
     """
 
     radius: float
     angle: float
     directions: tuple[str, ...] = ()
+    highest: int | None = field(default=None, repr=False)
+    falling: int | None = field(default=None, repr=False)
 
     @property
     def x(self) -> float:
@@ -166,39 +168,52 @@ class Tabletop:
     @property
     def highest(self) -> int:
         """The most blocks of a pile that the arm can work on from above."""
-        return int(HIGHEST * 0.045 / self.side)
+        return int(LEVEL * max(levels for _, levels in HEIGHTS) / self.side + 1e-9)
+
+    def room(self, slot: Slot) -> int:
+        """The most blocks of a pile at a slot: as many as the arm reaches there, and as the layout was made for."""
+        reached = int(highest(slot.radius) / self.side + 1e-9)
+        return reached if slot.highest is None else min(reached, slot.highest)
 
     def bind(self, instance: Instance) -> dict[str, Slot]:
         """Give every location of `instance` its slot, in order.
 
+        How high piles get is a question of the plan: `smash.execution.scene.piles.misfits` answers it.
+
         Raises:
-            DoesNotFit: where the instance has more stacks, buffers, stations or blocks, or larger carriers, than the
-                scene has room for.
+            DoesNotFit: where the instance has more stacks, buffers or stations, or larger carriers, than the scene has
+                room for, or starts with a higher pile.
         """
         cells = 0 if self.tray is None else self.tray.capacity
         for what, wanted, room in (
             ("stacks", len(instance.stacks), len(self.stacks)),
             ("buffers", len(instance.buffers), len(self.buffers)),
-            ("blocks, which a plan may pile up", len(instance.blocks), self.highest),
             ("stations", len(stations_of(instance)), len(self.stations)),
             ("places on a carrier", max((c.capacity for c in instance.carriers), default=0), cells),
         ):
             if wanted > room:
                 raise DoesNotFit(
                     f"instance {instance.name!r} has {wanted} {what}; scene {self.name!r} has room for {room}"
-                    + (self._import_that_fits(instance) if what in ("stacks", "buffers") else "")
+                    + (self._way_out(instance) if what in ("stacks", "buffers") else "")
                 )
-        return {
+        slots = {
             **dict(zip(instance.stacks, self.stacks, strict=False)),
             **dict(zip(instance.buffers, self.buffers, strict=False)),
         }
+        for location, slot in slots.items():
+            height, room = len(instance.start.get(location, ())), self.room(slot)
+            if height > room:
+                raise DoesNotFit(
+                    f"instance {instance.name!r} starts with {height} blocks on {location!r}; "
+                    f"scene {self.name!r} has room for {room} there"
+                )
+        return slots
 
-    def _import_that_fits(self, instance: Instance) -> str:
-        """Say how a problem without places of its own is imported for this scene; nothing for another one."""
+    def _way_out(self, instance: Instance) -> str:
+        """Say what makes a scene that fits, or how a problem without places of its own is imported for this one."""
         piles = sum(bool(pile) for pile in instance.start.values())
-        fits = piles <= len(self.stacks) + len(self.buffers) and len(instance.blocks) <= self.highest
-        if not isinstance(instance.goal, OnGoal) or not fits:
-            return ""
+        if not isinstance(instance.goal, OnGoal) or piles > len(self.stacks) + len(self.buffers):
+            return "; `smash layout INSTANCE PLAN --out SCENE.toml` looks for one that has more"
         flags = f"--stacks {len(self.stacks)} --buffers {len(self.buffers)}"
         return f"; an `on` goal names no place, and `smash import-blocks … {flags}` makes an instance that fits"
 

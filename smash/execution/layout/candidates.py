@@ -1,0 +1,157 @@
+"""Where a place may be: slots on a polar grid around the arm, with the strip of each topple direction."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import atan2, hypot, radians
+
+import numpy as np
+from numpy.typing import NDArray
+
+from smash.execution.actions.topple import RUN_UP, SWEEP, strip
+from smash.execution.layout.conditions import FALLING, STRIP_SAMPLES
+from smash.execution.layout.rectangles import Floats, Mask, Rectangles
+from smash.execution.layout.wanted import Place
+from smash.execution.scene.reach import highest
+from smash.execution.scene.tabletop import DIRECTIONS, Slot
+from smash.motion.collision import HAND_CORNERS
+
+RADII = tuple(round(0.34 + 0.02 * step, 2) for step in range(17))
+"""Distances of slots from the base [m]: nearer the arm stands in its own way, farther it is stretched out."""
+ANGLES = tuple(range(-165, 166, 3))
+"""Bearings of slots [degrees]: the first joint does not turn through the back."""
+LEAST_REACH, MOST_BEARING = 0.28, radians(172.0)
+"""Blocks in a strip are picked no nearer to the base than this [m], and no farther around [rad]."""
+HAND_HALF = float(np.abs(HAND_CORNERS[:, 1]).max())
+HAND_THICK = float(HAND_CORNERS[1, 0])
+
+
+@dataclass(frozen=True, slots=True)
+class Spacing:
+    """How far things are apart.
+
+    Attributes:
+        apart: Middles of two slots, in sides of a block.
+        beside: A slot's middle from a strip, and from the hand's way along a push [m].
+        pushes: Whether a push also keeps clear of where other blocks may lie.
+    """
+
+    apart: float
+    beside: float
+    pushes: bool
+
+
+SPACINGS = (Spacing(3.3, 0.085, True), Spacing(2.2, 0.042, True), Spacing(2.2, 0.042, False))
+"""The roomy one first: the hand passes between all piles, and what happens at a slot is none of a strip's business.
+
+The others leave the hand, half open, room between two piles, and half of a block's diagonal and 1 cm beside a strip.
+In the last one blocks may lie in a push's way: the executor shoves or clears them.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Candidates:
+    """N ways to place one kind of place.
+
+    Attributes:
+        slots: The slots, length N.
+        middles: Of the slots [m], shape (N, 2).
+        strips: What toppled blocks may lie in; None where none are toppled.
+        ways: What the hand passes in a push, from the run-up to its end; None likewise.
+    """
+
+    slots: tuple[Slot, ...]
+    middles: Floats
+    strips: Rectangles | None
+    ways: Rectangles | None
+
+    def some(self, which: NDArray[np.int64]) -> Candidates:
+        """Those of these numbers, shape (K,)."""
+        strips = None if self.strips is None else self.strips[which]
+        ways = None if self.ways is None else self.ways[which]
+        return Candidates(tuple(self.slots[index] for index in which), self.middles[which], strips, ways)
+
+    def only(self, which: int) -> Candidates:
+        """One of them."""
+        return self.some(np.array([which]))
+
+    def beside(self, other: Candidates, side: float, spacing: Spacing) -> Mask:
+        """Which of them can stand together with the only one of `other`, shape (N,).
+
+        Args:
+            other: What stands already.
+            side: Of a block [m].
+            spacing: How far apart.
+        """
+        there = other.middles[0]
+        bad = np.linalg.norm(self.middles - there, axis=1) < spacing.apart * side
+        for own in filter(None, (self.strips, self.ways)):
+            bad |= own.hold(there, spacing.beside)
+        for its in filter(None, (other.strips, other.ways)):
+            bad |= its.hold(self.middles, spacing.beside)
+        if self.strips is not None and other.strips is not None:
+            bad |= self.strips.meet(other.strips)
+            if spacing.pushes and self.ways is not None and other.ways is not None:
+                bad |= self.strips.meet(other.ways) | self.ways.meet(other.strips)
+        return ~bad
+
+
+def candidates(place: Place, side: float) -> Candidates:
+    """All candidates of a place: those whose pile, and whose strip, the arm reaches.
+
+    Args:
+        place: What is asked for; its name does not matter.
+        side: Of a block [m].
+    """
+    return _of(list(_slots(place, side)), place, side)
+
+
+def _slots(place: Place, side: float) -> Iterator[Slot]:
+    for radius in RADII:
+        if highest(radius) < place.height * side - 1e-9:
+            continue
+        for angle in ANGLES:
+            if not place.falling:
+                yield Slot(radius, radians(angle), highest=place.height)
+                continue
+            for direction in DIRECTIONS:
+                slot = Slot(radius, radians(angle), (direction,), place.height, place.falling)
+                if _in_reach(slot, side):
+                    yield slot
+
+
+def _in_reach(slot: Slot, side: float) -> bool:
+    """Whether blocks can be picked wherever they may lie in a slot's only strip, as far as strips are judged."""
+    assert slot.falling is not None
+    room, judged = strip(slot.falling), strip(min(slot.falling, FALLING))
+    aside = room.half_width - side / 2
+    places = (
+        slot.point(float(along), sign * aside, slot.directions[0])
+        for along in np.linspace(side, judged.length, STRIP_SAMPLES)
+        for sign in (-1.0, 0.0, 1.0)
+    )
+    return all(_picked(hypot(x, y), side) and abs(atan2(y, x)) <= MOST_BEARING for x, y in places)
+
+
+def _picked(radius: float, side: float) -> bool:
+    return highest(radius) >= side or LEAST_REACH <= radius <= RADII[0]
+
+
+def _of(slots: list[Slot], place: Place, side: float) -> Candidates:
+    middles = np.array([(slot.x, slot.y) for slot in slots]).reshape(-1, 2)
+    if not place.falling:
+        return Candidates(tuple(slots), middles, None, None)
+    heading = np.array([slot.heading(slot.directions[0]) for slot in slots])
+    axes = np.stack([np.cos(heading), np.sin(heading)], axis=1).reshape(-1, 2)
+    room = strip(place.falling)
+    begin = -(RUN_UP + side / 2 + 2 * HAND_THICK)
+    end = (SWEEP.follow_through - 0.5) * side
+    strips = _along(middles, axes, side / 2, room.length, room.half_width)
+    return Candidates(tuple(slots), middles, strips, _along(middles, axes, begin, end, HAND_HALF))
+
+
+def _along(middles: Floats, axes: Floats, begin: float, end: float, half_width: float) -> Rectangles:
+    return Rectangles(middles + (begin + end) / 2 * axes, axes, np.array([(end - begin) / 2, half_width]))
+
+
