@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import degrees
 from pathlib import Path
 
 import click
@@ -87,6 +88,6 @@ def command(
     write_text(out, scene_toml(with_slots(document, out.stem, slots.stacks, slots.buffers), about))
     for place, slot in zip(found.places, slots.slots, strict=True):
         falls = f", {place.falling} fall {slot.directions[0]}" if place.falling else ""
-        click.echo(f"{place.location}: r {100 * slot.radius:.0f} cm, {round(slot.angle * 57.29578)} degrees, ", nl=False)
-        click.echo(f"{place.height} high{falls}")
+        where = f"{100 * slot.radius:.0f} cm at {degrees(slot.angle):.0f} degrees"
+        click.echo(f"{place.location}: {where}, {place.height} high{falls}")
     click.echo(f"{out}: {len(slots.stacks)} stacks, {len(slots.buffers)} buffers; both conditions hold")

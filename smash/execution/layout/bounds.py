@@ -17,6 +17,11 @@ from smash.execution.scene.reach import HEIGHTS, highest
 from smash.execution.scene.scene_file import LEAST_APART
 
 
+def highest_anywhere(side: float) -> int:
+    """The most blocks of a pile that the arm reaches at its best distance, of a side [m]."""
+    return int(max(highest(radius) for radius, _ in HEIGHTS) / side + 1e-9)
+
+
 def impossible(places: Sequence[Place], side: float) -> str | None:
     """Return why no layout has all these places, or None where the bounds do not say so.
 
@@ -24,7 +29,7 @@ def impossible(places: Sequence[Place], side: float) -> str | None:
         places: What is asked for.
         side: Of a block [m].
     """
-    most = int(max(highest(radius) for radius, _ in HEIGHTS) / side + 1e-9)
+    most = highest_anywhere(side)
     for place in places:
         if place.height > most:
             piled = f"location {place.location!r} has to take {place.height} blocks"
@@ -52,7 +57,9 @@ def _too_wide(places: Sequence[Place], side: float) -> str | None:
     room = pi * (HEIGHTS[-1][0] + margin) ** 2
     if taken <= room:
         return None
-    return f"blocks and landing strips take {taken:.2f} m2 of the table, and there are {room:.2f} m2 in reach of the arm"
+    return (
+        f"blocks and landing strips take {taken:.2f} m2 of the table, and there are {room:.2f} m2 in reach of the arm"
+    )
 
 
 def _judged(falling: int, side: float) -> tuple[float, float]:

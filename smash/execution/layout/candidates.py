@@ -94,7 +94,7 @@ class Candidates:
             bad |= self.strips.meet(other.strips)
             if spacing.pushes and self.ways is not None and other.ways is not None:
                 bad |= self.strips.meet(other.ways) | self.ways.meet(other.strips)
-        return ~bad
+        return np.asarray(~bad)
 
 
 def candidates(place: Place, side: float) -> Candidates:
@@ -111,27 +111,34 @@ def _slots(place: Place, side: float) -> Iterator[Slot]:
     for radius in RADII:
         if highest(radius) < place.height * side - 1e-9:
             continue
-        for angle in ANGLES:
+        reached = {way: _bearings(Slot(radius, 0.0, (way,), falling=place.falling), side) for way in DIRECTIONS}
+        for angle in map(radians, ANGLES):
             if not place.falling:
-                yield Slot(radius, radians(angle), highest=place.height)
+                yield Slot(radius, angle, highest=place.height)
                 continue
-            for direction in DIRECTIONS:
-                slot = Slot(radius, radians(angle), (direction,), place.height, place.falling)
-                if _in_reach(slot, side):
-                    yield slot
+            for direction, bearings in reached.items():
+                if bearings and max(abs(angle + bearings[0]), abs(angle + bearings[1])) <= MOST_BEARING:
+                    yield Slot(radius, angle, (direction,), place.height, place.falling)
 
 
-def _in_reach(slot: Slot, side: float) -> bool:
-    """Whether blocks can be picked wherever they may lie in a slot's only strip, as far as strips are judged."""
-    assert slot.falling is not None
+def _bearings(slot: Slot, side: float) -> tuple[float, float] | None:
+    """Least and greatest bearing in the strip of a slot straight ahead [rad], as far as strips are judged.
+
+    None where there is no strip, or where the arm does not reach all of it.
+    """
+    if not slot.falling:
+        return None
     room, judged = strip(slot.falling), strip(min(slot.falling, FALLING))
     aside = room.half_width - side / 2
-    places = (
+    places = [
         slot.point(float(along), sign * aside, slot.directions[0])
         for along in np.linspace(side, judged.length, STRIP_SAMPLES)
         for sign in (-1.0, 0.0, 1.0)
-    )
-    return all(_picked(hypot(x, y), side) and abs(atan2(y, x)) <= MOST_BEARING for x, y in places)
+    ]
+    if not all(_picked(hypot(x, y), side) for x, y in places):
+        return None
+    bearings = [atan2(y, x) for x, y in places]
+    return min(bearings), max(bearings)
 
 
 def _picked(radius: float, side: float) -> bool:
@@ -153,5 +160,3 @@ def _of(slots: list[Slot], place: Place, side: float) -> Candidates:
 
 def _along(middles: Floats, axes: Floats, begin: float, end: float, half_width: float) -> Rectangles:
     return Rectangles(middles + (begin + end) / 2 * axes, axes, np.array([(end - begin) / 2, half_width]))
-
-

@@ -12,6 +12,8 @@ from smash.execution.scene.tabletop import Slot, Tabletop
 
 REACH = (0.30, 0.65)
 """Radii between which the hand reaches every height from above [m]."""
+ASLANT = 0.4
+"""Names stand outside of their slots, to the side where the bearing's cosine is greater."""
 STACK, BUFFER, STRIP, TRAY = "#2563a8", "#8a8f98", "#d9822b", "#7a5a34"
 
 
@@ -84,8 +86,9 @@ def _slot(axis: Any, slot: Slot, side: float, colour: str, name: str) -> None:
     from matplotlib.patches import Polygon
 
     axis.add_patch(Polygon(_corners(slot.x, slot.y, slot.angle, side / 2, side / 2), color=colour, zorder=2))
-    far = slot.radius + 0.06
-    axis.text(far * cos(slot.angle), far * sin(slot.angle), name, ha="center", va="center", fontsize=8, zorder=4)
+    far, sideways = slot.radius + 0.9 * side, cos(slot.angle)
+    anchor = "left" if sideways > ASLANT else "right" if sideways < -ASLANT else "center"
+    axis.text(far * sideways, far * sin(slot.angle), name, ha=anchor, va="center", fontsize=8, zorder=4)
 
 
 def _strip(axis: Any, slot: Slot, direction: str, side: float, preferred: bool) -> None:

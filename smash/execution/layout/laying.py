@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from smash.execution.layout.bounds import impossible
+from smash.execution.layout.bounds import highest_anywhere, impossible
 from smash.execution.layout.judging import problems_of, problems_of_plan
 from smash.execution.layout.search import find_layout
 from smash.execution.layout.wanted import Place, places_of_instance, places_of_plan
 from smash.execution.scene.tabletop import Slot, Tabletop
 from smash.problem.errors import SmashError, Unsupported
-from smash.problem.model import Action, Instance
+from smash.problem.model import Action
 from smash.problem.rules import Law
 
 ATTEMPTS = 60
@@ -85,11 +85,13 @@ def lay_out(
     if actions is None:
         places = wanted_places(law, height, buffer_height)
     else:
-        places = places_of_plan(law, actions)
+        places = places_of_plan(law, actions, highest_anywhere(tabletop.side))
     if instance.table and not any(place.falling for place in places):
         places[0] = replace(places[0], falling=1)
     reason = impossible(places, tabletop.side)
     if reason is not None:
+        if actions is None and height is None:
+            reason += "; without a plan any pile may have all blocks: give the PLAN, or --height"
         raise NoLayout(f"no layout for {instance.name!r} exists: {reason}")
 
     def scene(slots: Sequence[Slot]) -> Tabletop:
@@ -106,8 +108,3 @@ def lay_out(
     if found.slots is None:
         raise NotFound(f"no layout for {instance.name!r} was found in {attempts} attempts; the nearest: {found.reason}")
     return Layout(scene(found.slots), tuple(places), found.attempts)
-
-
-def why_higher_than_needed(instance: Instance) -> str:
-    """Say how a layout is asked for that takes no more than is needed."""
-    return f"without a plan, any of the {len(instance.blocks)} blocks may be piled up: give the PLAN, or --height"

@@ -25,10 +25,18 @@ class Place:
     falling: int = 0
 
 
-def places_of_plan(law: Law, actions: Sequence[Action]) -> list[Place]:
-    """Return what a legal plan asks for: a place for each location, in the order of the instance."""
+def places_of_plan(law: Law, actions: Sequence[Action], most: int) -> list[Place]:
+    """Return what a legal plan asks for: a place for each location, in the order of the instance.
+
+    Each pile may be one block higher, where the arm reaches that: recovery puts blocks down, and plans are made anew.
+
+    Args:
+        law: The instance and what the plan may use.
+        actions: The plan.
+        most: The most blocks of a pile that the arm reaches anywhere.
+    """
     heights, falls = highest_piles(law, actions), largest_topples(law, actions)
-    return [Place(name, max(1, height), falls.get(name, 0)) for name, height in heights.items()]
+    return [Place(name, max(height, min(height + 1, most)), falls.get(name, 0)) for name, height in heights.items()]
 
 
 def places_of_instance(instance: Instance, options: PlanOptions, height: int, buffer_height: int) -> list[Place]:

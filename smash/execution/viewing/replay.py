@@ -45,9 +45,7 @@ def write_replay(path: Path, recording: Recording, tabletop: Tabletop, episode: 
     """
     scene: dict[str, Any] = {
         "side": tabletop.side,
-        "slots": [
-            [slot.x, slot.y, slot.angle, index < len(tabletop.stacks)] for index, slot in enumerate(tabletop.slots)
-        ],
+        "slots": [[slot.x, slot.y, slot.angle, bool(slot.directions)] for slot in tabletop.slots],
         "places": _places(tabletop, instance),
         "blocks": instance.blocks,
         "colours": block_colours(len(instance.blocks)),
