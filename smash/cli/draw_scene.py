@@ -7,18 +7,22 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
+from smash.cli.choices import robot_option
 from smash.problem.extras import require
 from smash.problem.files.documents import require_writable
 
 
 @click.command("draw-scene")
 @click.argument("scene", type=click.Path(path_type=Path), required=False)
+@robot_option
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Picture (.png, .pdf, .svg).")
 @click.option(
     "--height", type=click.IntRange(1, 20), metavar="N", help="Blocks of full stacks (default: the scene's, else 9)."
 )
 @click.option("--buffer-height", type=click.IntRange(1, 20), metavar="N", help="The same of buffers (default: 4).")
-def command(scene: Path | None, out: Path | None, height: int | None, buffer_height: int | None) -> None:
+def command(
+    scene: Path | None, robot: str | None, out: Path | None, height: int | None, buffer_height: int | None
+) -> None:
     """Draw a scene file (default: the built-in scene) and check the paper's two conditions; exit 3 where one fails.
 
     \b
@@ -28,10 +32,10 @@ def command(scene: Path | None, out: Path | None, height: int | None, buffer_hei
     require("smash draw-scene", "pinocchio")
     from smash.execution.layout.conditions import full_piles, violations
     from smash.execution.layout.drawing import draw
-    from smash.execution.scene.scene_file import default_scene, read_scene
+    from smash.execution.scene.scene_file import scene_of
 
     require_writable(out)
-    tabletop = default_scene() if scene is None else read_scene(scene)
+    tabletop = scene_of(scene, robot=robot)
     if out is not None:
         if out.suffix not in (".png", ".pdf", ".svg"):
             raise click.BadParameter("a picture's name ends in .png, .pdf or .svg", param_hint="--out")

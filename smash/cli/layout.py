@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from smash.cli.choices import robot_option
 from smash.problem.errors import RefusedPlan
 from smash.problem.extras import require
 from smash.problem.files.documents import require_writable, write_text
@@ -25,6 +26,7 @@ from smash.problem.rules import Law
 @click.option("--height", type=click.IntRange(1), metavar="N", help="Piles on stacks (default: all blocks).")
 @click.option("--buffer-height", type=click.IntRange(1), metavar="N", help="Piles on buffers (default: 4 at most).")
 @click.option("--scene", type=click.Path(path_type=Path), help="Blocks, friction and speed (default: the built-in).")
+@robot_option
 @click.option("--attempts", type=click.IntRange(1), metavar="N", help="Arrangements that are tried (default: 60).")
 @click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Of the search.")
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), required=True, help="Scene file (.toml).")
@@ -36,6 +38,7 @@ def command(
     height: int | None,
     buffer_height: int | None,
     scene: Path | None,
+    robot: str | None,
     attempts: int | None,
     seed: int,
     out: Path,
@@ -70,13 +73,16 @@ def command(
             raise RefusedPlan(f"the plan for {problem.name!r}: {verdict}")
         options, actions = filed.options, filed.actions or ()
     from smash.execution.layout.laying import ATTEMPTS, Layout, lay_out
-    from smash.execution.scene.scene_file import DEFAULT_SCENE, scene_document, scene_from_document
+    from smash.execution.scene.scene_file import DEFAULT_SCENE, scene_document, scene_of
     from smash.execution.scene.scene_writing import scene_toml, with_slots
 
+    tabletop = scene_of(scene, robot=robot)
     document = scene_document(DEFAULT_SCENE if scene is None else scene)
+    if tabletop.robot is not None:
+        document["robot"] = tabletop.robot
     found: Layout = lay_out(
         Law(problem, options),
-        scene_from_document(document),
+        tabletop,
         actions,
         height=height,
         buffer_height=buffer_height,

@@ -13,6 +13,7 @@ from time import perf_counter
 
 import numpy as np
 
+from smash.execution.ability import require_able
 from smash.execution.actions.arm_motions import ArmMotions
 from smash.execution.errors import Blind, Fell, NotAtGoal
 from smash.execution.grounding import Grounder, Task
@@ -30,7 +31,6 @@ from smash.execution.scene.start import starting_carriers, starting_poses
 from smash.execution.scene.tabletop import DoesNotFit, Tabletop
 from smash.execution.sight import Sight
 from smash.execution.watching import DISTURBED, Watch, part_of, spoilt
-from smash.motion.robot import READY
 from smash.problem.errors import ExecutionFailure, IllegalAction, Unsupported
 from smash.problem.files.plans import action_from_list, action_list
 from smash.problem.model import Action, Instance, PlanOptions, State
@@ -68,8 +68,10 @@ class Executor:
         ended: Where everything was at the episode's end.
 
     Raises:
-        DoesNotFit: where the scene has no room for the instance, or for the piles and topples of the plan.
-        Unsupported: where a block is in the hand at the start, or the engine is not installed.
+        DoesNotFit: where the scene has no room for the instance, or for the piles and topples of the plan, or the robot
+            does not reach what it needs.
+        Unsupported: where the robot cannot do an action, a block is in the hand at the start, or the engine is not
+            installed.
     """
 
     def __init__(
@@ -102,9 +104,11 @@ class Executor:
         self.engine = engine_of(tabletop, engine)
         self.law = Law(instance, plan.options)
         self.table = Geometry(tabletop.bind(instance), tabletop.bind_stations(instance))
+        self.arm = ArmMotions(tabletop, seed)
+        places = {**self.table.slots, **self.table.stations}
+        require_able(self.arm.robot, tabletop, self.law, plan.actions or (), places)
         for misfit in misfits(tabletop, self.law, plan.actions or ()):
             raise DoesNotFit(misfit)
-        self.arm = ArmMotions(tabletop, seed)
         self.chance = Chance(tabletop, instance, seed)
         self.grounder = Grounder(self.arm, self.chance.astray)
         self.performed: list[Performed] = []
@@ -124,7 +128,7 @@ class Executor:
         world = world_of(self.engine)(
             self.chance.scene(),
             self.chance.at_start(poses),
-            READY,
+            self.arm.robot.ready,
             carriers=carriers,
             made=self.chance.made,
             gui=self._gui,
@@ -346,6 +350,7 @@ class Executor:
             max_topple=self.plan.options.max_topple,
             scene=self.tabletop.name,
             engine=self.engine,
+            robot=self.arm.robot.label,
             seed=self.seed,
             replanning=self.policy.replans > 0,
             success=failure is None,

@@ -202,7 +202,7 @@ def test_what_cannot_be_carried_out_is_said():
         smash.execute(FIGURE_1, [])
     for more, words in (
         ({"engine": "ode"}, "'pybullet' or 'mujoco' is allowed"),
-        ({"robot": "ur5"}, "None is allowed"),
+        ({"robot": "nobody"}, "there is none called 'nobody'; panda"),
     ):
         with pytest.raises(smash.SmashError, match=words):
             smash.execute(FIGURE_1, [], **more)

@@ -13,18 +13,17 @@ from smash.execution.actions.topple import RUN_UP, SWEEP, strip
 from smash.execution.layout.conditions import FALLING, STRIP_SAMPLES
 from smash.execution.layout.rectangles import Floats, Mask, Rectangles
 from smash.execution.layout.wanted import Place
-from smash.execution.scene.reach import highest
 from smash.execution.scene.tabletop import DIRECTIONS, Slot
-from smash.motion.collision import HAND_CORNERS
+from smash.motion.robot import Robot
 
-RADII = tuple(round(0.34 + 0.02 * step, 2) for step in range(17))
-"""Distances of slots from the base [m]: nearer the arm stands in its own way, farther it is stretched out."""
+STEP = 0.02
+"""Between distances of slots from the base [m]."""
+INSIDE, OUTSIDE = 0.04, 0.08
+"""Slots keep so far from the inner and the outer edge of the ring in which the arm works at ease [m]."""
 ANGLES = tuple(range(-165, 166, 3))
 """Bearings of slots [degrees]: the first joint does not turn through the back."""
-LEAST_REACH, MOST_BEARING = 0.28, radians(172.0)
-"""Blocks in a strip are picked no nearer to the base than this [m], and no farther around [rad]."""
-HAND_HALF = float(np.abs(HAND_CORNERS[:, 1]).max())
-HAND_THICK = float(HAND_CORNERS[1, 0])
+MOST_BEARING = radians(172.0)
+"""Blocks in a strip are picked no farther around [rad]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,21 +96,30 @@ class Candidates:
         return np.asarray(~bad)
 
 
-def candidates(place: Place, side: float) -> Candidates:
+def candidates(place: Place, side: float, robot: Robot) -> Candidates:
     """All candidates of a place: those whose pile, and whose strip, the arm reaches.
 
     Args:
         place: What is asked for; its name does not matter.
         side: Of a block [m].
+        robot: Who has to reach it.
     """
-    return _of(list(_slots(place, side)), place, side)
+    return _of(list(_slots(place, side, robot)), place, side, robot)
 
 
-def _slots(place: Place, side: float) -> Iterator[Slot]:
-    for radius in RADII:
-        if highest(radius) < place.height * side - 1e-9:
+def ring(robot: Robot) -> tuple[float, float]:
+    """Between which distances from the base the arm works at ease [m]: where it reaches half of its greatest height."""
+    radii = [radius for radius, height in robot.heights if height >= robot.tallest / 2]
+    return min(radii), max(radii)
+
+
+def _slots(place: Place, side: float, robot: Robot) -> Iterator[Slot]:
+    near, far = ring(robot)
+    for radius in map(float, np.arange(near + INSIDE, far - OUTSIDE + 1e-9, STEP).round(3)):
+        if robot.highest(radius) < place.height * side - 1e-9:
             continue
-        reached = {way: _bearings(Slot(radius, 0.0, (way,), falling=place.falling), side) for way in DIRECTIONS}
+        ahead = {way: Slot(radius, 0.0, (way,), falling=place.falling) for way in DIRECTIONS}
+        reached = {way: _bearings(slot, side, near, far) for way, slot in ahead.items()}
         for angle in map(radians, ANGLES):
             if not place.falling:
                 yield Slot(radius, angle, highest=place.height)
@@ -121,10 +129,10 @@ def _slots(place: Place, side: float) -> Iterator[Slot]:
                     yield Slot(radius, angle, (direction,), place.height, place.falling)
 
 
-def _bearings(slot: Slot, side: float) -> tuple[float, float] | None:
+def _bearings(slot: Slot, side: float, near: float, far: float) -> tuple[float, float] | None:
     """Least and greatest bearing in the strip of a slot straight ahead [rad], as far as strips are judged.
 
-    None where there is no strip, or where the arm does not reach all of it.
+    None where there is no strip, or where not all of it is between two distances from the base [m].
     """
     if not slot.falling:
         return None
@@ -135,27 +143,23 @@ def _bearings(slot: Slot, side: float) -> tuple[float, float] | None:
         for along in np.linspace(side, judged.length, STRIP_SAMPLES)
         for sign in (-1.0, 0.0, 1.0)
     ]
-    if not all(_picked(hypot(x, y), side) for x, y in places):
+    if not all(near <= hypot(x, y) <= far for x, y in places):
         return None
     bearings = [atan2(y, x) for x, y in places]
     return min(bearings), max(bearings)
 
 
-def _picked(radius: float, side: float) -> bool:
-    return highest(radius) >= side or LEAST_REACH <= radius <= RADII[0]
-
-
-def _of(slots: list[Slot], place: Place, side: float) -> Candidates:
+def _of(slots: list[Slot], place: Place, side: float, robot: Robot) -> Candidates:
     middles = np.array([(slot.x, slot.y) for slot in slots]).reshape(-1, 2)
     if not place.falling:
         return Candidates(tuple(slots), middles, None, None)
     heading = np.array([slot.heading(slot.directions[0]) for slot in slots])
     axes = np.stack([np.cos(heading), np.sin(heading)], axis=1).reshape(-1, 2)
-    room = strip(place.falling)
-    begin = -(RUN_UP + side / 2 + 2 * HAND_THICK)
+    room, palm = strip(place.falling), np.abs(robot.hand.palm).max(axis=0)
+    begin = -(RUN_UP + side / 2 + 2 * palm[0])
     end = (SWEEP.follow_through - 0.5) * side
     strips = _along(middles, axes, side / 2, room.length, room.half_width)
-    return Candidates(tuple(slots), middles, strips, _along(middles, axes, begin, end, HAND_HALF))
+    return Candidates(tuple(slots), middles, strips, _along(middles, axes, begin, end, palm[1]))
 
 
 def _along(middles: Floats, axes: Floats, begin: float, end: float, half_width: float) -> Rectangles:

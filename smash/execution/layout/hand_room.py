@@ -19,7 +19,7 @@ from smash.motion.collision import CollisionChecker
 from smash.motion.kinematics import along_line, inverse
 from smash.motion.obstacles import HandState, Scene
 from smash.motion.poses import Vector, top_down, yaw_rotation
-from smash.motion.robot import LOWER, MAX_OPENING, UPPER
+from smash.motion.robot import Robot
 
 ROOM = 0.004
 """The hand keeps this far from all piles [m]: more than a pick asks for."""
@@ -34,11 +34,13 @@ class HandRoom:
 
     Args:
         side: Of a block [m].
+        robot: Whose hand; its first joint turns it about the vertical.
     """
 
-    def __init__(self, side: float) -> None:
+    def __init__(self, side: float, robot: Robot) -> None:
         self._side = side
-        self._hand = HandState(min(MAX_OPENING, side / 2 + OPENINGS[0]))
+        self._robot = robot
+        self._hand = HandState(min(robot.hand.opening, side / 2 + OPENINGS[0]))
         self._ways: dict[tuple[float, int], list[NDArray[np.float64]]] = {}
 
     def among(self, slots: Sequence[Slot]) -> bool:
@@ -47,7 +49,7 @@ class HandRoom:
         for index, slot in enumerate(slots):
             assert slot.highest is not None
             others = piles.without([str(index)]).with_table()
-            checker = CollisionChecker(others, self._hand, ROOM)
+            checker = CollisionChecker(self._robot, others, self._hand, ROOM)
             for level in sorted({1, (slot.highest + 1) // 2, slot.highest}):
                 if not any(self._free(way, slot.angle, checker) for way in self._ways_down(slot.radius, level)):
                     return False
@@ -60,13 +62,11 @@ class HandRoom:
         turned = np.array([yaw_rotation(slot.angle) for slot in slots])
         return Scene.of_boxes([str(index) for index in range(len(slots))], centres, half, turned)
 
-    @staticmethod
-    def _free(way: NDArray[np.float64], angle: float, checker: CollisionChecker) -> bool:
-        """Whether a way down, shape (3, 7) [rad], is free at a bearing, at its three points."""
+    def _free(self, way: NDArray[np.float64], angle: float, checker: CollisionChecker) -> bool:
+        """Whether a way down, shape (3, n) [rad], is free at a bearing, at its three points."""
         turned = way.copy()
         turned[:, 0] = (way[:, 0] + angle + pi) % (2 * pi) - pi
-        inside = bool((turned[:, 0] >= LOWER[0]).all() and (turned[:, 0] <= UPPER[0]).all())
-        return inside and all(checker.free(joints) for joints in turned)
+        return self._robot.within_limits(turned) and all(checker.free(joints) for joints in turned)
 
     def _ways_down(self, radius: float, level: int) -> list[NDArray[np.float64]]:
         """Ways down to a block at this distance, straight ahead, the block's end first."""
@@ -75,7 +75,8 @@ class HandRoom:
             point = (radius, 0.0, (level - 0.5) * self._side)
             found: list[Vector] = []
             for turn in range(4):
-                found += inverse(top_down(point, turn * QUARTER), count=POSTURES)
-            lifted = [(joints, along_line(joints, [np.array([0.0, 0.0, up]) for up in LIFT])) for joints in found]
+                found += inverse(self._robot, top_down(point, turn * QUARTER), count=POSTURES)
+            ups = [np.array([0.0, 0.0, up]) for up in LIFT]
+            lifted = [(joints, along_line(self._robot, joints, ups)) for joints in found]
             self._ways[key] = [np.stack([joints, *rows]) for joints, rows in lifted if rows is not None]
         return self._ways[key]

@@ -14,7 +14,6 @@ from smash.execution.scene.block_pose import BlockPose, standing
 from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.start import starting_poses
 from smash.execution.scene.tabletop import Tabletop
-from smash.motion.robot import READY
 from smash.problem.errors import ExecutionFailure
 from smash.problem.model import Action
 from smash.problem.rules import Law
@@ -32,7 +31,7 @@ def problems_of(tabletop: Tabletop) -> Iterator[str]:
         pile = tuple(name for name in poses if name.startswith(f"stacks[{index}] "))
         for height in sorted({1, len(pile) - (slot.falling or len(pile)) + 1}):
             try:
-                topple(arm, READY, slot, pile, height, poses)
+                topple(arm, arm.robot.ready, slot, pile, height, poses)
             except ExecutionFailure as failure:
                 yield f"stacks[{index}]: no push at height {height} among full piles: {failure}"
 
@@ -41,7 +40,8 @@ def problems_of_plan(tabletop: Tabletop, law: Law, actions: Sequence[Action]) ->
     """Yield the actions of a legal plan for which no motion is found before the episode, as the executor plans it."""
     slots = tabletop.bind(law.instance)
     poses = starting_poses(law.instance, slots, tabletop, np.random.default_rng(0))
-    tasks = Grounder(ArmMotions(tabletop)).ground(actions, law, Geometry(slots, blocks=poses), READY)
+    arm = ArmMotions(tabletop)
+    tasks = Grounder(arm).ground(actions, law, Geometry(slots, blocks=poses), arm.robot.ready)
     for step, task in enumerate(tasks, start=1):
         if task.problem is not None:
             yield f"step {step} ({task.action}): {task.problem}"

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from smash.execution.layout.bounds import highest_anywhere, impossible
+from smash.execution.layout.bounds import impossible
 from smash.execution.layout.judging import problems_of, problems_of_plan
 from smash.execution.layout.search import find_layout
 from smash.execution.layout.wanted import Place, places_of_instance, places_of_plan
 from smash.execution.scene.tabletop import Slot, Tabletop
+from smash.motion.robots import load_robot
 from smash.problem.errors import SmashError, Unsupported
 from smash.problem.model import Action
 from smash.problem.rules import Law
@@ -67,7 +68,7 @@ def lay_out(
 
     Args:
         law: The instance, and what plans may use.
-        tabletop: Blocks and speed; its slots do not matter.
+        tabletop: Blocks, speed and robot; its slots do not matter.
         actions: A legal plan, by which places are made; where None, for any plan with piles up to the heights.
         height: The most blocks of a pile on a stack; all where None.
         buffer_height: The same on a buffer; at most `BUFFER_HEIGHT` where None.
@@ -77,18 +78,20 @@ def lay_out(
     Raises:
         NoLayout: where none can exist.
         NotFound: where none was found.
-        Unsupported: where the instance has carriers.
+        Unsupported: where the instance has carriers, or the arm does not turn about the vertical.
     """
-    instance = law.instance
+    instance, robot = law.instance, load_robot(tabletop.robot)
+    if not robot.upright:
+        raise Unsupported(f"robot {robot.name!r}: its first joint does not turn it about the vertical, as layouts need")
     if instance.carriers:
         raise Unsupported(f"instance {instance.name!r} has carriers; layouts have no stations for them")
     if actions is None:
         places = wanted_places(law, height, buffer_height)
     else:
-        places = places_of_plan(law, actions, highest_anywhere(tabletop.side))
+        places = places_of_plan(law, actions, tabletop.highest)
     if instance.table and not any(place.falling for place in places):
         places[0] = replace(places[0], falling=1)
-    reason = impossible(places, tabletop.side)
+    reason = impossible(places, tabletop.side, robot)
     if reason is not None:
         if actions is None and height is None:
             reason += "; without a plan any pile may have all blocks: give the PLAN, or --height"
@@ -104,7 +107,7 @@ def lay_out(
             None if actions is None else next(problems_of_plan(made, law, actions), None)
         )
 
-    found = find_layout(places, tabletop.side, judge, attempts=attempts, seed=seed)
+    found = find_layout(places, tabletop.side, robot, judge, attempts=attempts, seed=seed)
     if found.slots is None:
         raise NotFound(f"no layout for {instance.name!r} was found in {attempts} attempts; the nearest: {found.reason}")
     return Layout(scene(found.slots), tuple(places), found.attempts)

@@ -19,6 +19,7 @@ from smash.execution.layout.hand_room import HandRoom
 from smash.execution.layout.rectangles import Mask
 from smash.execution.layout.wanted import Place
 from smash.execution.scene.tabletop import Slot
+from smash.motion.robot import Robot
 
 SAMPLE = 12
 """Candidates that are looked at for each place."""
@@ -46,18 +47,21 @@ class Found:
     reason: str = ""
 
 
-def find_layout(places: Sequence[Place], side: float, judge: Judge, *, attempts: int = 60, seed: int = 0) -> Found:
+def find_layout(
+    places: Sequence[Place], side: float, robot: Robot, judge: Judge, *, attempts: int = 60, seed: int = 0
+) -> Found:
     """Look for slots for all places.
 
     Args:
         places: What is asked for.
         side: Of a block [m].
+        robot: Who has to reach them.
         judge: Has the last word on what an attempt leaves.
         attempts: How many there are at most.
         seed: Of the attempts.
     """
-    pools = {kind: candidates(Place("", *kind), side) for kind in {(p.height, p.falling) for p in places}}
-    room, nearest, reason = HandRoom(side), -1, ""
+    pools = {kind: candidates(Place("", *kind), side, robot) for kind in {(p.height, p.falling) for p in places}}
+    room, nearest, reason = HandRoom(side, robot), -1, ""
     for number in range(attempts):
         spacing = SPACINGS[len(SPACINGS) * number // attempts]
         attempt = _Attempt(places, side, pools, room, np.random.default_rng((seed, number)), spacing)

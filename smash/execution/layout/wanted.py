@@ -36,7 +36,8 @@ def places_of_plan(law: Law, actions: Sequence[Action], most: int) -> list[Place
         most: The most blocks of a pile that the arm reaches anywhere.
     """
     heights, falls = highest_piles(law, actions), largest_topples(law, actions)
-    return [Place(name, max(height, min(height + 1, most)), falls.get(name, 0)) for name, height in heights.items()]
+    spare = {name: max(heights.get(name, 0), min(heights.get(name, 0) + 1, most)) for name in law.instance.locations}
+    return [Place(name, height, falls.get(name, 0)) for name, height in spare.items()]
 
 
 def places_of_instance(instance: Instance, options: PlanOptions, height: int, buffer_height: int) -> list[Place]:

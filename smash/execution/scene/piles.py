@@ -12,12 +12,16 @@ from smash.problem.rules import Law
 
 
 def highest_piles(law: Law, actions: Sequence[Action]) -> dict[str, int]:
-    """Return the most blocks that each location holds at any time of a legal plan."""
-    most = dict.fromkeys(law.instance.locations, 0)
+    """Return how many blocks stand at each location at most while a legal plan is carried out, where any do.
+
+    Stations that a carrier stands at count as one.
+    """
+    highest: dict[str, int] = {}
     for state in law.states(actions):
-        for location, pile in state.piles.items():
-            most[location] = max(most[location], len(pile))
-    return most
+        piles = {location: len(pile) for location, pile in state.piles.items() if pile}
+        for place, levels in (*piles.items(), *((station, 1) for station in state.stations.values())):
+            highest[place] = max(highest.get(place, 0), levels)
+    return highest
 
 
 def largest_topples(law: Law, actions: Sequence[Action]) -> dict[str, int]:
@@ -46,7 +50,7 @@ def misfits(tabletop: Tabletop, law: Law, actions: Sequence[Action]) -> Iterator
     """Yield, in words, what of a legal plan a scene that has a slot for every location has no room for."""
     slots = tabletop.bind(law.instance)
     for location, height in highest_piles(law, actions).items():
-        room = tabletop.room(slots[location])
+        room = tabletop.room(slots[location]) if location in slots else height
         if height > room:
             yield f"the plan piles {height} blocks on {location!r}; scene {tabletop.name!r} has room for {room} there"
     for location in largest_topples(law, actions):
