@@ -7,10 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from smash.execution.actions.topple import strip
-from smash.execution.layout.conditions import FALLING, falling
+from smash.execution.layout.conditions import falling
 from smash.execution.scene.tabletop import Slot, Tabletop
 from smash.motion.robots import load_robot
 
+EDGE = 0.85
+"""The picture ends here [m], or where the farthest strip does."""
 ASLANT = 0.4
 """Names stand outside of their slots, to the side where the bearing's cosine is greater."""
 STACK, BUFFER, STRIP, TRAY = "#2563a8", "#8a8f98", "#d9822b", "#7a5a34"
@@ -38,10 +40,13 @@ def draw(tabletop: Tabletop, path: Path) -> None:
     for index, slot in enumerate(tabletop.stations, start=1):
         _station(axis, slot, tabletop, f"t{index}")
     axis.set_aspect("equal")
-    axis.set(xlim=(-0.85, 0.85), ylim=(-0.85, 0.85), xlabel="x [m]", ylabel="y [m]")
+    edge = max([EDGE, *(0.02 + abs(value) for corner in _strip_corners(tabletop) for value in corner)])
+    axis.set(xlim=(-edge, edge), ylim=(-edge, edge), xlabel="x [m]", ylabel="y [m]")
     axis.set_title(f"Scene {tabletop.name!r}: blocks of {100 * tabletop.side:.1f} cm, to scale")
     trays = [Patch(facecolor="none", edgecolor=TRAY, label="station of a tray")] if tabletop.stations else []
     has_second = any(len(slot.directions) > 1 for slot in tabletop.stacks)
+    fallen = _fallen(tabletop)
+    strips = [Patch(color=STRIP, alpha=0.35, label=f"landing strip, {fallen}")] if fallen else []
     second = [Patch(facecolor=STRIP, alpha=0.12, label="the same, second choice")] if has_second else []
     figure.legend(
         handles=[
@@ -49,7 +54,7 @@ def draw(tabletop: Tabletop, path: Path) -> None:
             Line2D([], [], marker="o", color="#3b3f45", linestyle="none", markersize=10, label="robot's base"),
             Patch(color=STACK, label="stack"),
             Patch(color=BUFFER, label="buffer"),
-            Patch(color=STRIP, alpha=0.35, label=f"landing strip, {_fallen(tabletop)}"),
+            *strips,
             *second,
             Patch(color="#eef3ee", label="reached from above at all heights"),
         ],
@@ -61,8 +66,10 @@ def draw(tabletop: Tabletop, path: Path) -> None:
 
 
 def _fallen(tabletop: Tabletop) -> str:
-    """How many blocks the strips are drawn for."""
-    made_for = {falling(slot) for slot in tabletop.stacks if slot.directions} or {FALLING}
+    """How many blocks the strips are drawn for; nothing where there are none."""
+    made_for = {falling(slot) for slot in tabletop.stacks if slot.directions}
+    if not made_for:
+        return ""
     least, most = min(made_for), max(made_for)
     return f"{most} block{'s' if most > 1 else ''}" if least == most else f"{least} to {most} blocks"
 
@@ -86,18 +93,29 @@ def _slot(axis: Any, slot: Slot, side: float, colour: str, name: str) -> None:
     from matplotlib.patches import Polygon
 
     axis.add_patch(Polygon(_corners(slot.x, slot.y, slot.angle, side / 2, side / 2), color=colour, zorder=2))
-    far, sideways = slot.radius + 0.9 * side, cos(slot.angle)
+    sideways = cos(slot.angle)
     anchor = "left" if sideways > ASLANT else "right" if sideways < -ASLANT else "center"
+    far = slot.radius + (1.2 if anchor == "center" else 0.9) * side
     axis.text(far * sideways, far * sin(slot.angle), name, ha=anchor, va="center", fontsize=8, zorder=4)
+
+
+def _strip_corners(tabletop: Tabletop) -> list[tuple[float, float]]:
+    """Corners of all strips [m]."""
+    ways = [(slot, direction) for slot in tabletop.stacks for direction in slot.directions]
+    return [corner for slot, direction in ways for corner in _outline(slot, direction, tabletop.side)]
+
+
+def _outline(slot: Slot, direction: str, side: float) -> list[tuple[float, float]]:
+    area = strip(falling(slot))
+    half = (area.length - side) / 2
+    x, y = slot.point(side + half, 0.0, direction)
+    return _corners(x, y, slot.heading(direction), half, area.half_width)
 
 
 def _strip(axis: Any, slot: Slot, direction: str, side: float, preferred: bool) -> None:
     from matplotlib.patches import Polygon
 
-    area = strip(falling(slot))
-    half = (area.length - side) / 2
-    x, y = slot.point(side + half, 0.0, direction)
-    corners = _corners(x, y, slot.heading(direction), half, area.half_width)
+    corners = _outline(slot, direction, side)
     axis.add_patch(Polygon(corners, facecolor=STRIP, alpha=0.35 if preferred else 0.12, edgecolor="none", zorder=1))
 
 

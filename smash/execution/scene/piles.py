@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from smash.execution.scene.tabletop import Tabletop
+from smash.execution.scene.tabletop import WAY_OUT, Tabletop
 from smash.problem.actions.registry import kind_of
 from smash.problem.actions.topple import Topple
 from smash.problem.model import Action, Instance, PositionsGoal, StacksGoal
@@ -52,7 +52,8 @@ def misfits(tabletop: Tabletop, law: Law, actions: Sequence[Action]) -> Iterator
     for location, height in highest_piles(law, actions).items():
         room = tabletop.room(slots[location]) if location in slots else height
         if height > room:
-            yield f"the plan piles {height} blocks on {location!r}; scene {tabletop.name!r} has room for {room} there"
+            piled = f"the plan piles {height} blocks on {location!r}"
+            yield f"{piled}; scene {tabletop.name!r} has room for {room} there{WAY_OUT}"
     for location in largest_topples(law, actions):
         if not slots[location].directions:
-            yield f"the plan topples at {location!r}; scene {tabletop.name!r} has no landing strip there"
+            yield f"the plan topples at {location!r}; scene {tabletop.name!r} has no landing strip there{WAY_OUT}"

@@ -28,6 +28,8 @@ DIRECTIONS: Mapping[str, float] = {
 SLOWEST = 0.01
 """The least share of the arm's limits that motions may use: an episode would take an hour of simulated time."""
 
+WAY_OUT = "; `smash layout INSTANCE PLAN --out SCENE.toml` looks for a scene that fits"
+
 
 class DoesNotFit(SmashError):
     """An instance that the scene has no room for."""
@@ -227,7 +229,7 @@ class Tabletop:
         """Say what makes a scene that fits, or how a problem without places of its own is imported for this one."""
         piles = sum(bool(pile) for pile in instance.start.values())
         if not isinstance(instance.goal, OnGoal) or piles > len(self.stacks) + len(self.buffers):
-            return "; `smash layout INSTANCE PLAN --out SCENE.toml` looks for one that has more"
+            return WAY_OUT
         flags = f"--stacks {len(self.stacks)} --buffers {len(self.buffers)}"
         return f"; an `on` goal names no place, and `smash import-blocks … {flags}` makes an instance that fits"
 
