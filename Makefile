@@ -158,6 +158,21 @@ engines-full: needs-analysis-execution-mujoco pybullet ## the same on a third of
 	    || exit 1; done
 	$(BIN)/python -m smash_analysis.engines runs/engines-full
 
+LAID := multi-20x5-000 multi-16x8-000
+
+layouts: needs-analysis-execution-mujoco pybullet ## 20 blocks on five stacks and 16 on eight: planned, laid out, drawn, carried out in both engines (about 15 minutes of one core)
+	$(BIN)/python -m smash generate multi --blocks 20 --stacks 5 --buffers 6 --seed 1 --out runs/layouts
+	$(BIN)/python -m smash generate multi --blocks 16 --stacks 8 --buffers 4 --seed 1 --out runs/layouts
+	for name in $(LAID); do for kind in topple plain; do \
+	  at=runs/layouts/$$name.$$kind; less=$$(test $$kind = topple || echo --no-topple); \
+	  $(BIN)/python -m smash plan runs/layouts/$$name.json $$less --budget 8 --out $$at.plan.json && \
+	  $(BIN)/python -m smash layout runs/layouts/$$name.json $$at.plan.json --out $$at.toml && \
+	  $(BIN)/python -m smash draw-scene $$at.toml --out $$at.png || exit 1; \
+	  for engine in mujoco pybullet; do for seed in 0 1; do \
+	    $(BIN)/python -m smash execute runs/layouts/$$name.json $$at.plan.json --scene $$at.toml --engine $$engine --seed $$seed \
+	      --out $$at.$$engine-$$seed.json >/dev/null || test $$? = 5 || exit 1; \
+	  done; done; done; done
+
 topple-map: needs-analysis-execution physics ## where toppled blocks land, per cut height and number (minutes)
 	$(BIN)/python -m smash topple-map --jobs 2 --out runs/topple-map
 

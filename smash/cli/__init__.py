@@ -23,6 +23,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "costs": ("smash.cli.costs", "fit the costs of actions to the durations of episodes"),
     "robot": ("smash.cli.robot", "list the robots, check a robot file, fit its spheres, measure its reach"),
     "draw-scene": ("smash.cli.draw_scene", "draw the table to scale and check the paper's two conditions"),
+    "layout": ("smash.cli.layout", "find places and landing strips for an instance, or say why there are none"),
     "topple-map": ("smash.cli.topple_map", "measure where toppled blocks land, and what topples succeed"),
     "validate": ("smash.cli.validate", "judge a plan by the law"),
     "export-pddl": ("smash.cli.export_pddl", "write an instance as PDDL for any planner outside"),

@@ -17,11 +17,13 @@ from smash.problem.words import counted
 @click.argument("scene", type=click.Path(path_type=Path), required=False)
 @robot_option
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Picture (.png, .pdf, .svg).")
-@click.option("--height", type=click.IntRange(1, 20), default=9, show_default=True, metavar="N", help="Full stacks.")
 @click.option(
-    "--buffer-height", type=click.IntRange(1, 20), default=4, show_default=True, metavar="N", help="Full buffers."
+    "--height", type=click.IntRange(1, 20), metavar="N", help="Blocks of full stacks (default: the scene's, else 9)."
 )
-def command(scene: Path | None, robot: str | None, out: Path | None, height: int, buffer_height: int) -> None:
+@click.option("--buffer-height", type=click.IntRange(1, 20), metavar="N", help="The same of buffers (default: 4).")
+def command(
+    scene: Path | None, robot: str | None, out: Path | None, height: int | None, buffer_height: int | None
+) -> None:
     """Draw a scene file (default: the built-in scene) and check the paper's two conditions; exit 3 where one fails.
 
     \b
@@ -29,7 +31,7 @@ def command(scene: Path | None, robot: str | None, out: Path | None, height: int
       smash draw-scene my-scene.toml --out scene.png
     """
     require("smash draw-scene", "pinocchio")
-    from smash.execution.layout.conditions import violations
+    from smash.execution.layout.conditions import full_piles, violations
     from smash.execution.layout.drawing import draw
     from smash.execution.scene.scene_file import scene_of
 
@@ -45,5 +47,10 @@ def command(scene: Path | None, robot: str | None, out: Path | None, height: int
         click.echo(problem)
     if found:
         fail(f"scene {tabletop.name!r} breaks a condition in {counted(len(found), 'place')}", 3)
-    piles = f"{height} blocks on stacks and {buffer_height} on buffers"
+    full = full_piles(tabletop, height, buffer_height)
+    piles = " and ".join(
+        f"{most} blocks on {kind}"
+        for kind in ("stacks", "buffers")
+        if (most := max((high for name, high in full.items() if name.startswith(kind)), default=0))
+    )
     click.echo(f"scene {tabletop.name!r} keeps both conditions for piles of up to {piles}")

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from smash.execution.actions.registry import MOTIONS
+from smash.execution.scene.piles import highest_piles
 from smash.execution.scene.tabletop import DoesNotFit, Slot, Tabletop
 from smash.motion.robot import Robot
 from smash.problem.errors import Unsupported
-from smash.problem.model import Action, Aggregating, State
+from smash.problem.model import Action, Aggregating
 from smash.problem.rules import Law
 
 
@@ -46,19 +47,6 @@ def require_able(
                 f"robot {robot.name!r} does not reach {levels} blocks at {place!r} of scene {tabletop.name!r}, "
                 f"{radius:.2f} m from its base; it reaches {_say(robot, tabletop.side)}"
             )
-
-
-def highest_piles(law: Law, actions: Sequence[Action]) -> dict[str, int]:
-    """Return how many blocks stand at each location at most while a plan is carried out, where any do.
-
-    Stations that a carrier stands at count as one.
-    """
-    highest: dict[str, int] = {}
-    for state in (State.start_of(law.instance), *law.states(actions)):
-        piles = {location: len(pile) for location, pile in state.piles.items() if pile}
-        for place, levels in (*piles.items(), *((station, 1) for station in state.stations.values())):
-            highest[place] = max(highest.get(place, 0), levels)
-    return highest
 
 
 def _say(robot: Robot, side: float) -> str:

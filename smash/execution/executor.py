@@ -26,8 +26,9 @@ from smash.execution.readback import NOWHERE, fallen_off
 from smash.execution.recovery import Recovery
 from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.noise import Chance
+from smash.execution.scene.piles import misfits
 from smash.execution.scene.start import starting_carriers, starting_poses
-from smash.execution.scene.tabletop import Tabletop
+from smash.execution.scene.tabletop import DoesNotFit, Tabletop
 from smash.execution.sight import Sight
 from smash.execution.watching import DISTURBED, Watch, part_of, spoilt
 from smash.problem.errors import ExecutionFailure, IllegalAction, Unsupported
@@ -67,7 +68,8 @@ class Executor:
         ended: Where everything was at the episode's end.
 
     Raises:
-        DoesNotFit: where the scene has no room for the instance, or the robot does not reach what the plan needs.
+        DoesNotFit: where the scene has no room for the instance, or for the piles and topples of the plan, or the robot
+            does not reach what it needs.
         Unsupported: where the robot cannot do an action, a block is in the hand at the start, or the engine is not
             installed.
     """
@@ -105,6 +107,8 @@ class Executor:
         self.arm = ArmMotions(tabletop, seed)
         places = {**self.table.slots, **self.table.stations}
         require_able(self.arm.robot, tabletop, self.law, plan.actions or (), places)
+        for misfit in misfits(tabletop, self.law, plan.actions or ()):
+            raise DoesNotFit(misfit)
         self.chance = Chance(tabletop, instance, seed)
         self.grounder = Grounder(self.arm, self.chance.astray)
         self.performed: list[Performed] = []
@@ -320,18 +324,21 @@ class Executor:
         begun = perf_counter()
         actions = self._ask(remaining)
         self.task_seconds += perf_counter() - begun
-        law = Law(remaining, self.plan.options)
-        return self._ground(actions, law) if actions is not None and law.check(actions).accepted else None
+        return None if actions is None else self._ground(actions, Law(remaining, self.plan.options))
 
     def _ask(self, instance: Instance) -> Sequence[Action] | None:
-        """A plan for what is observed, without topples where they keep failing."""
+        """A plan for what is observed that fits the scene, without topples where they keep failing."""
         if self.replanner is None:
             return None
         options = self.plan.options
         failed = sum(row.action[0] == "topple" and row.outcome != "done" for row in self.performed)
-        if failed < TOPPLES_FAILED:
-            return self.replanner(instance, options)
-        return self.replanner(instance, replace(options, topple=False)) or self.replanner(instance, options)
+        asked = (options, replace(options, topple=False)) if options.topple else (options,)
+        for allowed in asked if failed < TOPPLES_FAILED else reversed(asked):
+            actions, law = self.replanner(instance, allowed), Law(instance, self.plan.options)
+            fits = actions is not None and law.check(actions).accepted and not any(misfits(self.tabletop, law, actions))
+            if fits:
+                return actions
+        return None
 
     def _episode(self, failure: ExecutionFailure | None, final: State) -> Episode:
         rows = self.performed

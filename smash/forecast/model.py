@@ -133,7 +133,7 @@ class OutcomeModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_o
         for what, wanted, room in (
             ("stacks", len(instance.stacks), len(self.stacks)),
             ("buffers", len(instance.buffers), len(self.buffers)),
-            ("blocks, which a plan may pile up", len(instance.blocks), self.highest),
+            ("blocks in a pile", max((len(pile) for pile in instance.start.values()), default=0), self.highest),
         ):
             if wanted > room:
                 raise Unsupported(

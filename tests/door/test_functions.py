@@ -249,6 +249,7 @@ def test_without_an_extra_one_line_says_how_to_get_it(call, words):
         (["execute", FIGURE_1, "plan.json"], "execution"),
         (["episodes", "examples"], "execution"),
         (["draw-scene"], "execution"),
+        (["layout", FIGURE_1, "--out", "x.toml"], "execution"),
         (["topple-map"], "execution"),
         (["frontier", "multi-4", "--out", "frontier"], "analysis"),
         (["draw", "instance", FIGURE_1, "--out", "x.png"], "analysis"),

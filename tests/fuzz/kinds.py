@@ -327,6 +327,7 @@ def kinds(folder):
             (
                 (0.2, "draw-scene {file}"),
                 (0.3, "draw-scene {file} --out {out}/scene.svg"),
+                (0.02, "layout {in}/figure1.json --height 1 --attempts 1 --scene {file} --out {out}/made.toml"),
                 (0.02, "execute {in}/figure1.json {in}/none.json --scene {file}"),
                 (0.05, "episodes {in}/results --scene {file} --dry-run"),
             ),

@@ -27,7 +27,13 @@ from smash.motion.poses import top_down
 from smash.motion.robots import load_robot
 
 FALLING = 4
-"""Strips are checked for topples of so many blocks: larger ones are the planner's risk (`max_topple`)."""
+"""Strips are checked for topples of so many blocks where the scene does not say how many shall fall.
+
+The arm reaches them up to there at most: where blocks of larger topples come to rest is the planner's risk
+(`max_topple`).
+"""
+FULL_STACK, FULL_BUFFER = 9, 4
+"""Blocks of full piles where the scene does not say."""
 STRIP_SAMPLES = 6
 SOLUTIONS = 8
 
@@ -44,23 +50,38 @@ class Violation:
         return f"{self.condition}: {self.slot}: {self.problem}"
 
 
-def violations(tabletop: Tabletop, height: int = 9, buffer_height: int = 4) -> list[Violation]:
+def violations(tabletop: Tabletop, height: int | None = None, buffer_height: int | None = None) -> list[Violation]:
     """Check a layout; an empty list where both conditions hold.
 
     Args:
         tabletop: The scene.
-        height: Blocks of a full pile on a stack's slot.
-        buffer_height: The same on a buffer's slot.
+        height: Blocks of a full pile on a stack's slot; where None, what the slot was made for, or `FULL_STACK`.
+        buffer_height: The same on a buffer's slot, or `FULL_BUFFER`.
     """
     names = [f"stacks[{index}]" for index in range(len(tabletop.stacks))]
     names += [f"buffers[{index}]" for index in range(len(tabletop.buffers))]
     named = dict(zip(names, tabletop.slots, strict=True))
-    full = {name: height if slot.directions else buffer_height for name, slot in named.items()}
+    full = full_piles(tabletop, height, buffer_height)
     found = [problem for name in names for problem in _interactive(tabletop, named, name, full)]
     for name, slot in named.items():
         for direction in slot.directions:
             found += _strip_problems(tabletop, named, name, direction)
     return found
+
+
+def full_piles(tabletop: Tabletop, height: int | None = None, buffer_height: int | None = None) -> dict[str, int]:
+    """Blocks of a full pile on each slot, by what it is called in the scene's file (`violations` has the arguments)."""
+    kinds = (("stacks", tabletop.stacks, height, FULL_STACK), ("buffers", tabletop.buffers, buffer_height, FULL_BUFFER))
+    return {
+        f"{kind}[{index}]": asked or slot.highest or usual
+        for kind, slots, asked, usual in kinds
+        for index, slot in enumerate(slots)
+    }
+
+
+def falling(slot: Slot) -> int:
+    """How many blocks the strips of a slot are judged and drawn for."""
+    return slot.falling or FALLING
 
 
 def _interactive(tabletop: Tabletop, named: dict[str, Slot], name: str, full: dict[str, int]) -> list[Violation]:
@@ -109,7 +130,7 @@ def _stations(tabletop: Tabletop) -> dict[str, Slot]:
 def _strip_problems(tabletop: Tabletop, named: dict[str, Slot], name: str, direction: str) -> list[Violation]:
     condition, slot, side = "monotone transformation", named[name], tabletop.side
     found = []
-    area, robot = strip(FALLING), load_robot(tabletop.robot)
+    area, robot = strip(falling(slot)), load_robot(tabletop.robot)
     tray = 0.0 if tabletop.tray is None else min(tabletop.tray.size) / 2
     rooms = {key: (other, side / 2) for key, other in named.items() if key != name}
     rooms |= {key: (station, tray) for key, station in _stations(tabletop).items()}
@@ -117,7 +138,8 @@ def _strip_problems(tabletop: Tabletop, named: dict[str, Slot], name: str, direc
         along, aside = slot.coordinates(other.x, other.y, direction)
         if 0 < along < area.length + half and abs(aside) < area.half_width + half:
             found.append(Violation(condition, name, f"{key} lies in the strip of a {direction} topple"))
-    for along in np.linspace(2 * side, area.length, STRIP_SAMPLES):
+    reached = min(area.length, strip(FALLING).length)
+    for along in np.linspace(min(2 * side, reached), reached, STRIP_SAMPLES):
         x, y = slot.point(float(along), 0.0, direction)
         if not any(inverse(robot, top_down((x, y, side / 2), yaw), count=1) for yaw in (0.0, pi / 2)):
             problem = f"the {direction} strip is out of reach {100 * float(along):.0f} cm from the stack"

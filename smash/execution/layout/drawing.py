@@ -7,10 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from smash.execution.actions.topple import strip
-from smash.execution.layout.conditions import FALLING
+from smash.execution.layout.conditions import falling
 from smash.execution.scene.tabletop import Slot, Tabletop
 from smash.motion.robots import load_robot
 
+EDGE = 0.85
+"""The picture ends here [m], or where the farthest strip does."""
+ASLANT = 0.4
+"""Names stand outside of their slots, to the side where the bearing's cosine is greater."""
 STACK, BUFFER, STRIP, TRAY = "#2563a8", "#8a8f98", "#d9822b", "#7a5a34"
 
 
@@ -30,16 +34,19 @@ def draw(tabletop: Tabletop, path: Path) -> None:
     for index, slot in enumerate(tabletop.stacks, start=1):
         for rank, direction in enumerate(slot.directions):
             _strip(axis, slot, direction, tabletop.side, preferred=rank == 0)
-        _slot(axis, slot, tabletop.side, STACK, f"s{index}")
+        _slot(axis, slot, tabletop.side, STACK, _named(f"s{index}", slot))
     for index, slot in enumerate(tabletop.buffers, start=1):
-        _slot(axis, slot, tabletop.side, BUFFER, f"u{index}")
+        _slot(axis, slot, tabletop.side, BUFFER, _named(f"u{index}", slot))
     for index, slot in enumerate(tabletop.stations, start=1):
         _station(axis, slot, tabletop, f"t{index}")
     axis.set_aspect("equal")
-    axis.set(xlim=(-0.85, 0.85), ylim=(-0.85, 0.85), xlabel="x [m]", ylabel="y [m]")
+    edge = max([EDGE, *(0.02 + abs(value) for corner in _strip_corners(tabletop) for value in corner)])
+    axis.set(xlim=(-edge, edge), ylim=(-edge, edge), xlabel="x [m]", ylabel="y [m]")
     axis.set_title(f"Scene {tabletop.name!r}: blocks of {100 * tabletop.side:.1f} cm, to scale")
     trays = [Patch(facecolor="none", edgecolor=TRAY, label="station of a tray")] if tabletop.stations else []
     has_second = any(len(slot.directions) > 1 for slot in tabletop.stacks)
+    fallen = _fallen(tabletop)
+    strips = [Patch(color=STRIP, alpha=0.35, label=f"landing strip, {fallen}")] if fallen else []
     second = [Patch(facecolor=STRIP, alpha=0.12, label="the same, second choice")] if has_second else []
     figure.legend(
         handles=[
@@ -47,7 +54,7 @@ def draw(tabletop: Tabletop, path: Path) -> None:
             Line2D([], [], marker="o", color="#3b3f45", linestyle="none", markersize=10, label="robot's base"),
             Patch(color=STACK, label="stack"),
             Patch(color=BUFFER, label="buffer"),
-            Patch(color=STRIP, alpha=0.35, label=f"landing strip, {FALLING} blocks"),
+            *strips,
             *second,
             Patch(color="#eef3ee", label="reached from above at all heights"),
         ],
@@ -56,6 +63,15 @@ def draw(tabletop: Tabletop, path: Path) -> None:
         frameon=False,
     )
     figure.savefig(path, dpi=150)
+
+
+def _fallen(tabletop: Tabletop) -> str:
+    """How many blocks the strips are drawn for; nothing where there are none."""
+    made_for = {falling(slot) for slot in tabletop.stacks if slot.directions}
+    if not made_for:
+        return ""
+    least, most = min(made_for), max(made_for)
+    return f"{most} block{'s' if most > 1 else ''}" if least == most else f"{least} to {most} blocks"
 
 
 def _station(axis: Any, slot: Slot, tabletop: Tabletop, name: str) -> None:
@@ -68,21 +84,38 @@ def _station(axis: Any, slot: Slot, tabletop: Tabletop, name: str) -> None:
     axis.text(slot.x, slot.y, name, ha="center", va="center", fontsize=8, zorder=4)
 
 
+def _named(name: str, slot: Slot) -> str:
+    """What a slot is called, and how high its pile may be where the scene says so."""
+    return name if slot.highest is None else f"{name}: {slot.highest}"
+
+
 def _slot(axis: Any, slot: Slot, side: float, colour: str, name: str) -> None:
     from matplotlib.patches import Polygon
 
     axis.add_patch(Polygon(_corners(slot.x, slot.y, slot.angle, side / 2, side / 2), color=colour, zorder=2))
-    far = slot.radius + 0.06
-    axis.text(far * cos(slot.angle), far * sin(slot.angle), name, ha="center", va="center", fontsize=8, zorder=4)
+    sideways = cos(slot.angle)
+    anchor = "left" if sideways > ASLANT else "right" if sideways < -ASLANT else "center"
+    far = slot.radius + (1.2 if anchor == "center" else 0.9) * side
+    axis.text(far * sideways, far * sin(slot.angle), name, ha=anchor, va="center", fontsize=8, zorder=4)
+
+
+def _strip_corners(tabletop: Tabletop) -> list[tuple[float, float]]:
+    """Corners of all strips [m]."""
+    ways = [(slot, direction) for slot in tabletop.stacks for direction in slot.directions]
+    return [corner for slot, direction in ways for corner in _outline(slot, direction, tabletop.side)]
+
+
+def _outline(slot: Slot, direction: str, side: float) -> list[tuple[float, float]]:
+    area = strip(falling(slot))
+    half = (area.length - side) / 2
+    x, y = slot.point(side + half, 0.0, direction)
+    return _corners(x, y, slot.heading(direction), half, area.half_width)
 
 
 def _strip(axis: Any, slot: Slot, direction: str, side: float, preferred: bool) -> None:
     from matplotlib.patches import Polygon
 
-    area = strip(FALLING)
-    half = (area.length - side) / 2
-    x, y = slot.point(side + half, 0.0, direction)
-    corners = _corners(x, y, slot.heading(direction), half, area.half_width)
+    corners = _outline(slot, direction, side)
     axis.add_patch(Polygon(corners, facecolor=STRIP, alpha=0.35 if preferred else 0.12, edgecolor="none", zorder=1))
 
 

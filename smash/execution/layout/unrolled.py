@@ -30,6 +30,7 @@ def unrolled_positions(tabletop: Tabletop, instance: Instance) -> dict[str, tupl
     places = {name: _unrolled(*point) for name, point in points.items()}
     filled = [name for name in instance.stacks if instance.start[name]] or list(instance.stacks)
     middle = strip(TOPPLED).length / 2
+    filled = [name for name in filled if slots[name].directions]
     fallen = [_unrolled(*slots[name].point(middle, 0.0, slots[name].directions[0])) for name in filled]
     if fallen:
         places[TABLE] = (sum(x for x, _ in fallen) / len(fallen), sum(y for _, y in fallen) / len(fallen))

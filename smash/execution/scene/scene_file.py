@@ -22,8 +22,11 @@ from smash.problem.files.documents import check_format, convert, parse_json, par
 
 SCENE_FORMAT = "smash-scene/1"
 DEFAULT_SCENE = Path(__file__).parent / "default.toml"
+LEAST_APART = 1.5
+"""Middles of two slots are so many sides apart, or the file is refused."""
 
 _Share = Annotated[float, msgspec.Meta(ge=SLOWEST, le=1.0)]
+_Count = Annotated[int, msgspec.Meta(ge=1)]
 _Coefficient = Annotated[float, msgspec.Meta(gt=0.0, le=2.0)]
 
 
@@ -53,13 +56,19 @@ class _NoiseFile(msgspec.Struct, forbid_unknown_fields=True):
     size: float = 0.0
 
 
-class _BufferFile(msgspec.Struct, forbid_unknown_fields=True):
+class _SlotFile(msgspec.Struct, forbid_unknown_fields=True):
     radius: Annotated[float, msgspec.Meta(ge=0.25, le=0.75)]
     angle: Annotated[float, msgspec.Meta(ge=-180.0, le=180.0)]
 
 
-class _StackFile(_BufferFile, forbid_unknown_fields=True):
+class _BufferFile(_SlotFile, forbid_unknown_fields=True):
+    highest: _Count | None = None
+
+
+class _StackFile(_SlotFile, forbid_unknown_fields=True):
     topple: list[Literal["counter-clockwise", "clockwise", "outward", "inward"]]
+    highest: _Count | None = None
+    falling: _Count | None = None
 
 
 class _TrayFile(msgspec.Struct, forbid_unknown_fields=True):
@@ -83,7 +92,7 @@ class _SceneFile(msgspec.Struct, forbid_unknown_fields=True):
     speed: _SpeedFile = msgspec.field(default_factory=_SpeedFile)
     buffers: list[_BufferFile] = []
     tray: _TrayFile = msgspec.field(default_factory=_TrayFile)
-    stations: list[_BufferFile] = []
+    stations: list[_SlotFile] = []
     noise: _NoiseFile = msgspec.field(default_factory=_NoiseFile)
 
 
@@ -118,9 +127,9 @@ def scene_from_document(document: Any, where: str = "scene") -> Tabletop:
     if not file.stacks:
         raise MalformedFile(where, "`stacks`: at least one is needed")
     for number, stack in enumerate(file.stacks):
-        if not stack.topple or len(set(stack.topple)) < len(stack.topple):
+        if len(set(stack.topple)) < len(stack.topple):
             known = ", ".join(DIRECTIONS)
-            raise MalformedFile(where, f"`stacks[{number}].topple`: one or more of {known}, each once")
+            raise MalformedFile(where, f"`stacks[{number}].topple`: any of {known}, each once")
     table = Tabletop(
         name=file.name,
         side=file.block.side,
@@ -128,8 +137,8 @@ def scene_from_document(document: Any, where: str = "scene") -> Tabletop:
         friction=Friction(file.friction.block, file.friction.table, file.friction.finger),
         velocity=file.speed.velocity,
         acceleration=file.speed.acceleration,
-        stacks=tuple(Slot(s.radius, radians(s.angle), tuple(s.topple)) for s in file.stacks),
-        buffers=tuple(Slot(b.radius, radians(b.angle)) for b in file.buffers),
+        stacks=tuple(Slot(s.radius, radians(s.angle), tuple(s.topple), s.highest, s.falling) for s in file.stacks),
+        buffers=tuple(Slot(b.radius, radians(b.angle), highest=b.highest) for b in file.buffers),
         noise=_noise(file.noise, where),
         engine=file.engine,
     )
@@ -191,6 +200,18 @@ def scene_of(
     return scene
 
 
+def scene_document(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Return the document of a scene file that is well formed.
+
+    Raises:
+        MalformedFile: as `read_scene`.
+    """
+    where = os.fspath(path)
+    document = _parse(read_bytes(path), where)
+    scene_from_document(document, where)
+    return dict(document)
+
+
 def _parse(content: bytes, where: str) -> Any:
     return parse_toml(content, where) if where.endswith(".toml") else parse_json(content, where)
 
@@ -203,7 +224,7 @@ def _refuse_overlap(table: Tabletop, where: str) -> None:
     for first, (other, there) in enumerate(named):
         for name, slot in named[first + 1 :]:
             trays = name.startswith("stations") + other.startswith("stations")
-            least = trays * reach + 0.75 * table.side * (2 - trays)
+            least = trays * reach + LEAST_APART / 2 * table.side * (2 - trays)
             apart = slot.distance(there.x, there.y)
             if apart < least:
                 problem = f"stands {apart:.3f} m from {other}; {least:.3f} or more is allowed"

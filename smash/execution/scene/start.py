@@ -66,8 +66,9 @@ def _in_region(
     side = tabletop.side
     taken = [(float(pose.position[0]), float(pose.position[1])) for pose in poses]
     taken += [(slot.x, slot.y) for slot in slots.values()]
-    for _ in range(2000):
-        slot = tabletop.stacks[int(generator.integers(len(tabletop.stacks)))]
+    strips = [slot for slot in tabletop.stacks if slot.directions]
+    for _ in range(2000 if strips else 0):
+        slot = strips[int(generator.integers(len(strips)))]
         along = float(generator.uniform(*REGION_LENGTH))
         aside = float(generator.uniform(-REGION_HALF_WIDTH, REGION_HALF_WIDTH))
         x, y = slot.point(along, aside, slot.directions[0])

@@ -28,6 +28,8 @@ DIRECTIONS: Mapping[str, float] = {
 SLOWEST = 0.01
 """The least share of the arm's limits that motions may use: an episode would take an hour of simulated time."""
 
+WAY_OUT = "; `smash layout INSTANCE PLAN --out SCENE.toml` looks for a scene that fits"
+
 
 class DoesNotFit(SmashError):
     """An instance that the scene has no room for."""
@@ -41,11 +43,15 @@ class Slot:
         radius: Distance from the robot's base [m].
         angle: Bearing, also the direction of the frame's x axis [rad].
         directions: Names of the directions it may be toppled in, preferred first; none at a buffer.
+        highest: The most blocks of a pile that the layout was made for; None where it says nothing of it.
+        falling: The most blocks that its strips were made for, the same.
     """
 
     radius: float
     angle: float
     directions: tuple[str, ...] = ()
+    highest: int | None = field(default=None, repr=False)
+    falling: int | None = field(default=None, repr=False)
 
     @property
     def x(self) -> float:
@@ -178,39 +184,52 @@ class Tabletop:
     @property
     def highest(self) -> int:
         """The most blocks of a pile that the arm can work on from above."""
-        return int(load_robot(self.robot).tallest / self.side)
+        return int(load_robot(self.robot).tallest / self.side + 1e-9)
+
+    def room(self, slot: Slot) -> int:
+        """The most blocks of a pile at a slot: as many as the arm reaches there, and as the layout was made for."""
+        reached = int(load_robot(self.robot).highest(slot.radius) / self.side + 1e-9)
+        return reached if slot.highest is None else min(reached, slot.highest)
 
     def bind(self, instance: Instance) -> dict[str, Slot]:
         """Give every location of `instance` its slot, in order.
 
+        How high piles get is a question of the plan: `smash.execution.scene.piles.misfits` answers it.
+
         Raises:
-            DoesNotFit: where the instance has more stacks, buffers, stations or blocks, or larger carriers, than the
-                scene has room for.
+            DoesNotFit: where the instance has more stacks, buffers or stations, or larger carriers, than the scene has
+                room for, or starts with a higher pile.
         """
         cells = 0 if self.tray is None else self.tray.capacity
         for what, wanted, room in (
             ("stacks", len(instance.stacks), len(self.stacks)),
             ("buffers", len(instance.buffers), len(self.buffers)),
-            ("blocks, which a plan may pile up", len(instance.blocks), self.highest),
             ("stations", len(stations_of(instance)), len(self.stations)),
             ("places on a carrier", max((c.capacity for c in instance.carriers), default=0), cells),
         ):
             if wanted > room:
                 raise DoesNotFit(
                     f"instance {instance.name!r} has {wanted} {what}; scene {self.name!r} has room for {room}"
-                    + (self._import_that_fits(instance) if what in ("stacks", "buffers") else "")
+                    + (self._way_out(instance) if what in ("stacks", "buffers") else "")
                 )
-        return {
+        slots = {
             **dict(zip(instance.stacks, self.stacks, strict=False)),
             **dict(zip(instance.buffers, self.buffers, strict=False)),
         }
+        for location, slot in slots.items():
+            height, room = len(instance.start.get(location, ())), self.room(slot)
+            if height > room:
+                raise DoesNotFit(
+                    f"instance {instance.name!r} starts with {height} blocks on {location!r}; "
+                    f"scene {self.name!r} has room for {room} there"
+                )
+        return slots
 
-    def _import_that_fits(self, instance: Instance) -> str:
-        """Say how a problem without places of its own is imported for this scene; nothing for another one."""
+    def _way_out(self, instance: Instance) -> str:
+        """Say what makes a scene that fits, or how a problem without places of its own is imported for this one."""
         piles = sum(bool(pile) for pile in instance.start.values())
-        fits = piles <= len(self.stacks) + len(self.buffers) and len(instance.blocks) <= self.highest
-        if not isinstance(instance.goal, OnGoal) or not fits:
-            return ""
+        if not isinstance(instance.goal, OnGoal) or piles > len(self.stacks) + len(self.buffers):
+            return WAY_OUT
         flags = f"--stacks {len(self.stacks)} --buffers {len(self.buffers)}"
         return f"; an `on` goal names no place, and `smash import-blocks … {flags}` makes an instance that fits"
 

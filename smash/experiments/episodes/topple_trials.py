@@ -15,10 +15,17 @@ from smash.records.trials import Trial, simulated
 
 
 def wanted_trials(tabletop: Tabletop, engine: str, highest_cut: int, most: int, seeds: range) -> list[TrialRun]:
-    """Return every trial that the scene allows: seeds first, so that a part is a fair sample; stacks in turn."""
+    """Return every trial that the scene allows: seeds first, so that a part is a fair sample; stacks in turn.
+
+    Raises:
+        SmashError: where the scene has no strip to topple into.
+    """
+    stacks = [number for number, slot in enumerate(tabletop.stacks) if slot.directions]
+    if not stacks:
+        raise SmashError(f"scene {tabletop.name!r} has no landing strip: nothing is toppled there")
     document, layout = msgspec.to_builtins(tabletop), simulated(tabletop.fingerprint, engine)
     return [
-        TrialRun((layout, seed % len(tabletop.stacks), height, falling, seed), document, engine)
+        TrialRun((layout, stacks[seed % len(stacks)], height, falling, seed), document, engine)
         for seed in seeds
         for height in range(1, highest_cut + 1)
         for falling in range(1, most + 1)

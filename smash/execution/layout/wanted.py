@@ -1,0 +1,54 @@
+"""What a layout has to have: a place for every location, how high its pile gets, how many blocks fall there at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from smash.execution.scene.piles import highest_piles, largest_topples
+from smash.problem.model import Action, Instance, PlanOptions
+from smash.problem.rules import Law
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place that a layout has to have.
+
+    Attributes:
+        location: What the instance calls it.
+        height: The most blocks of its pile.
+        falling: The most blocks that are toppled there at once; 0: no strip is needed.
+    """
+
+    location: str
+    height: int
+    falling: int = 0
+
+
+def places_of_plan(law: Law, actions: Sequence[Action], most: int) -> list[Place]:
+    """Return what a legal plan asks for: a place for each location, in the order of the instance.
+
+    Each pile may be one block higher, where the arm reaches that: recovery puts blocks down, and plans are made anew.
+
+    Args:
+        law: The instance and what the plan may use.
+        actions: The plan.
+        most: The most blocks of a pile that the arm reaches anywhere.
+    """
+    heights, falls = highest_piles(law, actions), largest_topples(law, actions)
+    spare = {name: max(heights.get(name, 0), min(heights.get(name, 0) + 1, most)) for name in law.instance.locations}
+    return [Place(name, height, falls.get(name, 0)) for name, height in spare.items()]
+
+
+def places_of_instance(instance: Instance, options: PlanOptions, height: int, buffer_height: int) -> list[Place]:
+    """Return what any plan may ask for whose piles are no higher than this; a topple takes whole stacks where it may.
+
+    Args:
+        instance: The problem.
+        options: What plans may use.
+        height: The most blocks of a pile on a stack.
+        buffer_height: The same on a buffer.
+    """
+    falling = min(height, options.max_topple or height) if options.topple else 0
+    stacks = [Place(name, height, falling) for name in instance.stacks]
+    return stacks + [Place(name, buffer_height) for name in instance.buffers]
