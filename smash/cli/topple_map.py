@@ -76,7 +76,7 @@ def command(
     from smash.execution.scene.scene_file import default_scene, read_scene
     from smash.execution.trials.calibration import calibrations, require_comparable, table
     from smash.execution.trials.estimates import ENOUGH, TRUSTED, write_estimates
-    from smash.execution.trials.outcome_model import outcome_model
+    from smash.execution.trials.outcome_model import outcome_model, require_cubes
     from smash.execution.trials.topple_map import draw, estimates
     from smash.experiments.episodes.simulation import LONGEST
     from smash.experiments.episodes.topple_trials import run_apart, wanted_trials
@@ -90,6 +90,8 @@ def command(
 
     require_writable(model)
     tabletop = default_scene() if scene is None else read_scene(scene)
+    if model is not None:
+        require_cubes(tabletop)
     named, engine = engine, engine_of(tabletop, engine)
     say_engine(engine, tabletop, named)
     chosen_seeds = range(first_seed, first_seed + seeds)

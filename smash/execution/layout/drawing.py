@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from smash.execution.actions.topple import strip
-from smash.execution.layout.conditions import FALLING
+from smash.execution.layout.conditions import FALLING, fallen_cubes
 from smash.execution.scene.tabletop import Slot, Tabletop
 
 REACH = (0.30, 0.65)
@@ -29,15 +29,15 @@ def draw(tabletop: Tabletop, path: Path) -> None:
     axis.add_patch(Circle((0, 0), 0.08, facecolor="#3b3f45", zorder=3))
     for index, slot in enumerate(tabletop.stacks, start=1):
         for rank, direction in enumerate(slot.directions):
-            _strip(axis, slot, direction, tabletop.side, preferred=rank == 0)
-        _slot(axis, slot, tabletop.side, STACK, f"s{index}")
+            _strip(axis, slot, direction, tabletop, preferred=rank == 0)
+        _slot(axis, slot, tabletop.widest, STACK, f"s{index}")
     for index, slot in enumerate(tabletop.buffers, start=1):
-        _slot(axis, slot, tabletop.side, BUFFER, f"u{index}")
+        _slot(axis, slot, tabletop.widest, BUFFER, f"u{index}")
     for index, slot in enumerate(tabletop.stations, start=1):
         _station(axis, slot, tabletop, f"t{index}")
     axis.set_aspect("equal")
     axis.set(xlim=(-0.85, 0.85), ylim=(-0.85, 0.85), xlabel="x [m]", ylabel="y [m]")
-    axis.set_title(f"Scene {tabletop.name!r}: blocks of {100 * tabletop.side:.1f} cm, to scale")
+    axis.set_title(f"Scene {tabletop.name!r}: {_blocks(tabletop)}, to scale")
     trays = [Patch(facecolor="none", edgecolor=TRAY, label="station of a tray")] if tabletop.stations else []
     has_second = any(len(slot.directions) > 1 for slot in tabletop.stacks)
     second = [Patch(facecolor=STRIP, alpha=0.12, label="the same, second choice")] if has_second else []
@@ -76,12 +76,22 @@ def _slot(axis: Any, slot: Slot, side: float, colour: str, name: str) -> None:
     axis.text(far * cos(slot.angle), far * sin(slot.angle), name, ha="center", va="center", fontsize=8, zorder=4)
 
 
-def _strip(axis: Any, slot: Slot, direction: str, side: float, preferred: bool) -> None:
+def _blocks(tabletop: Tabletop) -> str:
+    """The sizes of its blocks."""
+    if tabletop.uniform:
+        return f"blocks of {100 * tabletop.side:.1f} cm"
+    sizes = [tabletop.block, *tabletop.sizes.values()]
+    spans = ([size.footprint for size in sizes], [size.height for size in sizes])
+    wide, high = (f"{100 * min(span):.1f} to {100 * max(span):.1f} cm" for span in spans)
+    return f"boxes {wide} wide, {high} high"
+
+
+def _strip(axis: Any, slot: Slot, direction: str, tabletop: Tabletop, preferred: bool) -> None:
     from matplotlib.patches import Polygon
 
-    area = strip(FALLING)
-    half = (area.length - side) / 2
-    x, y = slot.point(side + half, 0.0, direction)
+    area, wide = strip(fallen_cubes(tabletop)), tabletop.widest
+    half = (area.length - wide) / 2
+    x, y = slot.point(wide + half, 0.0, direction)
     corners = _corners(x, y, slot.heading(direction), half, area.half_width)
     axis.add_patch(Polygon(corners, facecolor=STRIP, alpha=0.35 if preferred else 0.12, edgecolor="none", zorder=1))
 

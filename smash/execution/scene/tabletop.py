@@ -6,12 +6,14 @@ frame (the stack's frame of the paper's pre-smash pose) has x radially outward a
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from hashlib import sha256
+from itertools import accumulate
 from math import cos, hypot, pi, sin
 
 from smash.execution.scene.block_pose import QUARTER, BlockPose
+from smash.execution.scene.block_size import BlockSize
 from smash.execution.scene.tray import Tray
 from smash.problem.errors import SmashError
 from smash.problem.model import Instance, OnGoal
@@ -28,7 +30,10 @@ SLOWEST = 0.01
 """The least share of the arm's limits that motions may use: an episode would take an hour of simulated time."""
 
 HIGHEST = 12
-"""The most blocks of 4.5 cm that the arm can stack from above within its joint limits; other sizes in proportion."""
+"""The most cubes of `CUBE` that the arm can stack from above within its joint limits; other sizes in proportion."""
+
+CUBE = 0.045
+"""Side of the cubes that pushes and piles were measured with [m]."""
 
 
 class DoesNotFit(SmashError):
@@ -103,7 +108,7 @@ class Noise:
             and y [m].
         friction: Of the coefficients of each block, the table and the fingers: standard deviation, share of them.
         mass: Of each block's mass: standard deviation, share of it.
-        size: Tolerance of each block's side: so much larger or smaller at most, evenly spread [m].
+        size: Tolerance of each block's edges: so much larger or smaller at most, all alike, evenly spread [m].
     """
 
     pose: float = 0.0
@@ -126,7 +131,7 @@ class Tabletop:
 
     Attributes:
         name: What the scene is called in records.
-        side: Side of a block [m].
+        side: Side of a block, which is a cube, or its footprint where it is none [m].
         mass: Mass of a block [kg].
         friction: Friction coefficients.
         velocity: Share of the arm's velocity limits that motions use.
@@ -137,6 +142,8 @@ class Tabletop:
         stations: Slots that trays can stand at, their length across the bearing.
         noise: What an episode does not know exactly.
         engine: What simulates it where nothing else is named; no part of the fingerprint.
+        height: Height of a block that is no cube [m].
+        sizes: The blocks that are of another size, by name.
     """
 
     name: str
@@ -151,6 +158,45 @@ class Tabletop:
     stations: tuple[Slot, ...] = ()
     noise: Noise = field(default=Noise(), repr=False)
     engine: str | None = field(default=None, repr=False)
+    height: float | None = field(default=None, repr=False)
+    sizes: Mapping[str, BlockSize] = field(default_factory=dict, repr=False, hash=False)
+
+    @property
+    def block(self) -> BlockSize:
+        """The size of every block that has none of its own."""
+        return BlockSize(self.side, self.side if self.height is None else self.height, self.mass)
+
+    def size(self, block: str) -> BlockSize:
+        """The size of a block."""
+        return self.sizes.get(block) or self.block
+
+    @property
+    def uniform(self) -> bool:
+        """Whether all blocks are cubes of one size."""
+        return self.height is None and not self.sizes
+
+    @property
+    def widest(self) -> float:
+        """The greatest footprint of a block [m]."""
+        return max(size.footprint for size in (self.block, *self.sizes.values()))
+
+    @property
+    def longest(self) -> float:
+        """The longest edge of a block [m]."""
+        return max(size.longest for size in (self.block, *self.sizes.values()))
+
+    @property
+    def cube(self) -> float:
+        """Side of the cubes that a pile is counted in where a push asks how high it is [m]."""
+        return self.side if self.uniform else CUBE
+
+    def greatest_heap(self, count: int) -> list[BlockSize]:
+        """Return the sizes of the highest pile of so many blocks, the highest block first.
+
+        Of a size that stands in the scene by name there is one block, of the other size as many as are wanted.
+        """
+        known = [*self.sizes.values(), *[self.block] * count]
+        return sorted(known, key=lambda size: -size.height)[:count]
 
     @property
     def slots(self) -> tuple[Slot, ...]:
@@ -161,12 +207,24 @@ class Tabletop:
     def fingerprint(self) -> str:
         """Eight characters that tell this scene from others, whatever they are called."""
         noise = "" if self.noise == Noise() else repr(self.noise)
-        return sha256(f"{self!r}{noise}".encode()).hexdigest()[:8]
+        sizes = "" if self.uniform else repr((self.height, sorted(self.sizes.items())))
+        return sha256(f"{self!r}{noise}{sizes}".encode()).hexdigest()[:8]
 
     @property
     def highest(self) -> int:
-        """The most blocks of a pile that the arm can work on from above."""
-        return int(HIGHEST * 0.045 / self.side)
+        """The most blocks of a pile that the arm can work on from above, whichever they are."""
+        return int(HIGHEST * CUBE / self.longest)
+
+    def highest_of(self, blocks: Iterable[str]) -> int:
+        """How many of these blocks the arm can work on in one pile, whichever they are and however they lie."""
+        if self.uniform:
+            return self.highest
+        edges = sorted((self.size(block).longest for block in blocks), reverse=True)
+        return sum(height <= HIGHEST * CUBE + 1e-9 for height in accumulate(edges))
+
+    def strangers(self, instance: Instance) -> list[str]:
+        """The blocks that the scene gives a size and the instance has not."""
+        return [block for block in self.sizes if block not in instance.blocks]
 
     def bind(self, instance: Instance) -> dict[str, Slot]:
         """Give every location of `instance` its slot, in order.
@@ -179,7 +237,7 @@ class Tabletop:
         for what, wanted, room in (
             ("stacks", len(instance.stacks), len(self.stacks)),
             ("buffers", len(instance.buffers), len(self.buffers)),
-            ("blocks, which a plan may pile up", len(instance.blocks), self.highest),
+            ("blocks, which a plan may pile up", len(instance.blocks), self.highest_of(instance.blocks)),
             ("stations", len(stations_of(instance)), len(self.stations)),
             ("places on a carrier", max((c.capacity for c in instance.carriers), default=0), cells),
         ):
@@ -196,7 +254,9 @@ class Tabletop:
     def _import_that_fits(self, instance: Instance) -> str:
         """Say how a problem without places of its own is imported for this scene; nothing for another one."""
         piles = sum(bool(pile) for pile in instance.start.values())
-        fits = piles <= len(self.stacks) + len(self.buffers) and len(instance.blocks) <= self.highest
+        fits = piles <= len(self.stacks) + len(self.buffers) and len(instance.blocks) <= self.highest_of(
+            instance.blocks
+        )
         if not isinstance(instance.goal, OnGoal) or not fits:
             return ""
         flags = f"--stacks {len(self.stacks)} --buffers {len(self.buffers)}"

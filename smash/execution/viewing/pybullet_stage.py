@@ -32,14 +32,15 @@ class PyBulletStage(Stage):
 
     client: Any
 
-    def _open(self, tabletop: Tabletop, blocks: int, carriers: int) -> None:
+    def _open(self, tabletop: Tabletop, blocks: Sequence[str], carriers: int) -> None:
         self.client = c = connect(gui=False)
         self.robot = int(c.loadURDF(str(panda_urdf()), useFixedBase=True))
         self._box(TABLE_HALF, [0, 0, -TABLE_HALF[2]], TABLE_COLOUR)
         for slot in tabletop.slots:
-            half, colour = slot_look(slot, tabletop.side)
+            half, colour = slot_look(slot, tabletop.widest)
             self._box(half, [slot.x, slot.y, half[2]], colour, c.getQuaternionFromEuler([0, 0, slot.angle]))
-        self.blocks = [self._box([tabletop.side / 2] * 3, [0, 0, 0], colour) for colour in block_colours(blocks)]
+        looks = zip(blocks, block_colours(len(blocks)), strict=True)
+        self.blocks = [self._box(tabletop.size(block).half.tolist(), [0, 0, 0], colour) for block, colour in looks]
         self.trays = [self._tray(tabletop) for _ in range(carriers)]
 
     def close(self) -> None:
