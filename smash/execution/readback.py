@@ -13,7 +13,7 @@ from smash.execution.scene.tray import heading
 from smash.problem.model import State
 
 PLACED_WITHIN = 1 / 3
-"""A block stands at a location if its centre is within this share of its shortest edge of the slot's middle, ..."""
+"""A block stands at a location if its centre is within this share of its width of the slot's middle, ..."""
 MOST_WITHIN = 1 / 2
 """... (this one at most, where it is not seen exactly)"""
 LEVEL_WITHIN = 0.2
@@ -47,7 +47,7 @@ def read_state(where: Geometry, tabletop: Tabletop, hand: str | None = None, noi
         column = sorted(
             (float(pose.position[2]), name)
             for name, pose in loose.items()
-            if _over(pose, slot, _tolerance(tabletop.size(name), noise))
+            if _over(pose, slot, _tolerance(tabletop.size(name), pose, noise))
         )
         pile: list[str] = []
         below: list[float] = []
@@ -91,9 +91,9 @@ def _station(pose: BlockPose, stations: Mapping[str, Slot], tabletop: Tabletop) 
     return NOWHERE
 
 
-def _tolerance(size: BlockSize, noise: Noise) -> float:
+def _tolerance(size: BlockSize, pose: BlockPose, noise: Noise) -> float:
     """How far off a slot's middle a block stands at it [m]."""
-    side = min(size.footprint, size.height)
+    side = min(size.extents(pose)[:2])
     return min(PLACED_WITHIN * side + 2 * noise.pose + 2 * noise.camera, MOST_WITHIN * side)
 
 
