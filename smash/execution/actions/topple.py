@@ -76,6 +76,9 @@ TALL_CUT = Manner(0.8, 1.1)
 """More fall: a quick, short push leaves the rest of the pile where it is, a long one drags it along."""
 
 
+BOX_CUT = Manner(0.8, 2.0)
+"""Boxes fall from a rest: a slow push drags narrow ones below along, and a short one leaves a wide one on them."""
+
 MOST_SWEPT = 9
 """More blocks than this are not swept off the table at once, ..."""
 MOST_CUT = 4
@@ -121,10 +124,12 @@ def pushes_needed(height: int, tall: Sequence[float]) -> int:
     return count
 
 
-def manner(height: int, falling: int) -> Manner:
-    """How to topple so many cubes from this height on; measured, see `smash topple-map`."""
+def manner(height: int, falling: int, boxes: bool = False) -> Manner:
+    """How to topple so many cubes, or boxes as high, from this height on; measured, see `smash topple-map`."""
     if height == 1:
         return SWEEP if falling < 5 else TALL_SWEEP if falling < 7 else TALLEST_SWEEP
+    if boxes:
+        return BOX_CUT
     return SHORT_CUT if falling <= 3 else TALL_CUT
 
 
@@ -174,6 +179,7 @@ class Fall:
     Attributes:
         blocks: The lowest first.
         cubes: How many cubes they count as.
+        boxes: Whether the scene has boxes.
         level: Of the lowest one in the pile, 1 is the bottom.
         tip: Height of the fingertips as they push [m], ...
         above_cut: ... and above the foot of what falls [m].
@@ -184,6 +190,7 @@ class Fall:
 
     blocks: tuple[str, ...]
     cubes: int
+    boxes: bool
     level: int
     tip: float
     above_cut: float
@@ -196,7 +203,7 @@ class Fall:
     @property
     def manner(self) -> Manner:
         """How they are pushed."""
-        return manner(self.level, self.cubes)
+        return manner(self.level, self.cubes, self.boxes)
 
     @property
     def follow_through(self) -> float:
@@ -218,6 +225,7 @@ def fall_of(arm: ArmMotions, pile: Sequence[str], cut: int, where: Geometry) -> 
     return Fall(
         blocks=tuple(pile[cut - 1 :]),
         cubes=falling_cubes(cubes_high(arm, pile[cut - 1 :], where)),
+        boxes=not arm.tabletop.uniform,
         level=cut,
         tip=(levels(heights[: cut - 1], lowest) + ABOVE_CUT) * lowest,
         above_cut=ABOVE_CUT * lowest,
