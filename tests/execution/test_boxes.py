@@ -3,6 +3,7 @@
 import dataclasses
 from math import pi
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -22,13 +23,26 @@ from smash.execution.scene.block_size import BlockSize, levels
 from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.noise import Chance, Noise
 from smash.execution.scene.scene_file import default_scene, read_scene, scene_from_document
-from smash.execution.scene.start import starting_poses
-from smash.execution.scene.tabletop import DoesNotFit
+from smash.execution.scene.start import starting_carriers, starting_poses
+from smash.execution.scene.tabletop import DoesNotFit, Slot
+from smash.execution.scene.tray import Tray
+from smash.execution.sight import Sight
 from smash.execution.trials.outcome_model import require_cubes
 from smash.execution.trials.topple_map import pile_of
 from smash.motion.move import Move
 from smash.motion.robot import READY
-from smash.problem import Lift, MalformedFile, Pick, Place, PositionsGoal, StacksGoal, State, Topple, make_instance
+from smash.problem import (
+    Carrier,
+    Lift,
+    MalformedFile,
+    Pick,
+    Place,
+    PositionsGoal,
+    StacksGoal,
+    State,
+    Topple,
+    make_instance,
+)
 from smash.problem.errors import SmashError
 from smash.problem.rules import Law
 from tests.execution.episodes import plan_of
@@ -251,6 +265,33 @@ def test_the_conditions_hold_for_the_scene_of_boxes_and_not_for_wider_ones():
     assert violations(scene, height=3, buffer_height=2) == []
     tall = dataclasses.replace(scene, sizes={name: BlockSize(0.06, 0.065, 0.1) for name in "abcdefghi"})
     assert {problem.condition for problem in violations(tall, height=3, buffer_height=2)} == {"monotone transformation"}
+
+
+def test_boxes_stand_in_the_cells_of_a_tray_at_their_own_heights():
+    scene = dataclasses.replace(SCENE, tray=Tray(SCENE.longest), stations=(Slot(0.45, 1.8),))
+    instance = make_instance(
+        name="tray",
+        blocks=["a", "b"],
+        stacks=["s1"],
+        start={},
+        goal=PositionsGoal({}),
+        carriers=[Carrier("tray", ("left",), "left", 2, ("a", "b"))],
+    )
+    slots, stations = scene.bind(instance), scene.bind_stations(instance)
+    carriers = starting_carriers(instance, stations, scene)
+    where = Geometry(
+        slots, stations, starting_poses(instance, slots, scene, np.random.default_rng(0), carriers), carriers
+    )
+    assert [where.blocks[block].position[2] for block in "ab"] == pytest.approx([0.01 + 0.015, 0.01 + 0.03])
+    assert read_state(where, scene).carried == {"tray": {"a", "b"}}
+
+
+def test_what_stands_upright_is_seen_as_high_as_what_is_below_it():
+    scene = dataclasses.replace(SCENE, noise=Noise(pose=0.002))
+    where = laid_out(boxes(s1="abc"), scene)
+    world = SimpleNamespace(tabletop=scene, time=0.0, poses=lambda: where.blocks, carriers=dict)
+    seen = Sight(world, Chance(scene, boxes(s1="abc"), 1)).blocks()
+    assert [seen[block].position[2] for block in "abc"] == pytest.approx([0.015, 0.06, 0.1125])
 
 
 def shuffled():
