@@ -172,6 +172,13 @@ layouts: needs-analysis-execution-mujoco pybullet ## 20 blocks on five stacks an
 	    $(BIN)/python -m smash execute runs/layouts/$$name.json $$at.plan.json --scene $$at.toml --engine $$engine --seed $$seed \
 	      --out $$at.$$engine-$$seed.json >/dev/null || test $$? = 5 || exit 1; \
 	  done; done; done; done
+boxes: needs-analysis-execution-mujoco pybullet ## nine unlike boxes: plans, episodes by both policies and topples, in both engines (10 minutes; it can be resumed)
+	$(BIN)/python -m smash sweep experiments/boxes.toml --out runs/boxes
+	for engine in pybullet mujoco; do \
+	  $(BIN)/python -m smash episodes runs/boxes --policy open --policy replan --engine $$engine --scene examples/boxes-scene.toml --jobs 2 && \
+	  $(BIN)/python -m smash topple-map --seeds 2 --engine $$engine --scene examples/boxes-scene.toml --jobs 2 --out runs/boxes/landings/$$engine \
+	    || exit 1; done
+	$(BIN)/python -m smash_analysis.engines runs/boxes
 
 topple-map: needs-analysis-execution physics ## where toppled blocks land, per cut height and number (minutes)
 	$(BIN)/python -m smash topple-map --jobs 2 --out runs/topple-map

@@ -10,9 +10,11 @@ import click
 
 from smash.problem.actions.registry import FAMILY
 from smash.problem.extras import ENGINES
+from smash.problem.words import one_line
 
 if TYPE_CHECKING:
     from smash.execution.scene.tabletop import Tabletop
+    from smash.problem.model import Instance
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
@@ -71,6 +73,18 @@ def say_engine(engine: str, tabletop: Tabletop, named: str | None) -> None:
     """Say on standard error which engine is used, where neither the command line nor the scene names one."""
     if named is None and tabletop.engine is None:
         click.echo(f"engine: {engine} (--engine names another)", err=True)
+
+
+def say_strangers(tabletop: Tabletop, instance: Instance) -> None:
+    """Say on standard error which blocks the scene gives a size and the instance has not: a name may be misspelt."""
+    strangers = tabletop.strangers(instance)
+    if strangers:
+        named, more = (
+            ", ".join(map(repr, strangers[:5])),
+            f" and {len(strangers) - 5} more" if len(strangers) > 5 else "",
+        )
+        words = f"scene {tabletop.name!r} has sizes for blocks that instance {instance.name!r} has not: {named}{more}"
+        click.echo(one_line(words), err=True)
 
 
 def check_command(command: str | None, encoding: str | None) -> None:

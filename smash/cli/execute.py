@@ -7,7 +7,15 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
-from smash.cli.choices import budget_option, engine_option, noise_option, pace_option, robot_option, say_engine
+from smash.cli.choices import (
+    budget_option,
+    engine_option,
+    noise_option,
+    pace_option,
+    robot_option,
+    say_engine,
+    say_strangers,
+)
 from smash.cli.signals import ended_by_signals
 from smash.experiments.episodes.executors import executor_of
 from smash.problem.extras import EXECUTION, require, require_engine
@@ -108,6 +116,7 @@ def command(
     film = film_of(video_size, video_speed, video_camera)
     capture = Capture(replay=replay, video=video, stills=stills, trajectory=trajectory, looks=looks, film=film)
     tabletop = default_scene() if scene is None else read_scene(scene)
+    say_strangers(tabletop, problem)
     from rich.console import Console
     from rich.markup import escape
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from smash.execution.actions.registry import MOTIONS
-from smash.execution.scene.piles import highest_piles
+from smash.execution.scene.piles import stations_used, tallest_piles
 from smash.execution.scene.tabletop import DoesNotFit, Slot, Tabletop
 from smash.motion.robot import Robot
 from smash.problem.errors import Unsupported
 from smash.problem.model import Action, Aggregating
 from smash.problem.rules import Law
+from smash.problem.words import counted
 
 
 def require_able(
@@ -40,12 +41,15 @@ def require_able(
                 f"robot {robot.name!r}: its first joint does not turn it about the vertical, "
                 f"which {type(action).__name__.lower()} needs: it keeps level what the hand carries"
             )
-    for place, levels in highest_piles(law, actions).items():
-        radius, needed = places[place].radius, levels * tabletop.side
-        if needed > robot.highest(radius) + 1e-9:
+    piles = tallest_piles(tabletop, law, actions)
+    needs = {place: (counted(len(pile), "block"), tabletop.tall(pile)) for place, pile in piles.items()}
+    needs |= dict.fromkeys(stations_used(law, actions), ("a carrier", tabletop.side))
+    for place, (what, height) in needs.items():
+        radius = places[place].radius
+        if height > robot.highest(radius) + 1e-9:
             raise DoesNotFit(
-                f"robot {robot.name!r} does not reach {levels} blocks at {place!r} of scene {tabletop.name!r}, "
-                f"{radius:.2f} m from its base; it reaches {_say(robot, tabletop.side)}"
+                f"robot {robot.name!r} does not reach {what} at {place!r} of scene {tabletop.name!r}, "
+                f"{radius:.2f} m from its base; it reaches {_say(robot, tabletop.longest)}"
             )
 
 

@@ -5,6 +5,8 @@ a block becomes a *gap task*: it has no motion yet. The place that follows it is
 down to the target, and with it the terminal arm state that the rest of the plan starts from. At execution time the gap
 is bridged: to the revealed pick, from there to the stored place, and back to the promised state.
 
+A block that is no cube may come to lie on any face, and piles are as high as their blocks lie: what is done with such a
+block after its fall, or on a pile that holds one, is a gap task without a promise.
 What happens in or beside a landing strip is a gap task too as long as blocks lie there: they may be in the hand's way.
 So is a task that begins where such a one ends, which nobody knows yet. All other motions pass over the strips.
 """
@@ -118,7 +120,7 @@ class Grounder:
             last: Where it was last when that was known [rad], shape (n,).
             grasp: How it holds the block in the hand.
         """
-        if self._among_landed(action, where):
+        if self._among_landed(action, where) or self._height_unknown(action, state, where):
             return Task(action, None)
         try:
             if begins is not None:
@@ -139,10 +141,27 @@ class Grounder:
         Raises:
             NoIk, NoMotion: where there is none.
         """
-        stand = self.stand(action.target, state, where)
+        stand = self.stand(action.block, action.target, state, where)
         if self._astray is not None:
             stand = BlockPose(stand.position + np.append(self._astray(), 0.0), stand.rotation)
         return self.pick_and_place.landing(last, action.block, stand, self.arm.around(where), grasp)
+
+    def _height_unknown(self, action: Action, state: State, where: Geometry) -> bool:
+        """Whether it is about a block of which nobody knows on which face it lies, or what stands on such a one."""
+        match action:
+            case Pick(_, place):
+                places: tuple[str, ...] = () if place == TABLE else (place,)
+            case Place(block, place):
+                places = (place,)
+                if block not in where.blocks and not self.arm.size(block).is_cube:
+                    return True
+            case Aggregating() if type(action) in MOTIONS:
+                places = MOTIONS[type(action)].places(action)
+            case _:
+                places = ()
+        piles = {block for place in places for block in state.piles.get(place, ())}
+        touched = {action.block} if isinstance(action, Pick | Place) else set()
+        return not where.unsure.isdisjoint(piles | touched)
 
     @staticmethod
     def _among_landed(action: Action, where: Geometry) -> bool:
@@ -205,26 +224,30 @@ class Grounder:
                 return MOTIONS[type(action)].anchor(action, state, where)
         return None
 
-    def stand(self, target: str, state: State, where: Geometry) -> BlockPose:
-        """Where the next block stands that is placed on a location or a carrier.
+    def stand(self, block: str, target: str, state: State, where: Geometry) -> BlockPose:
+        """Where a block stands, on the face that it lies on now, when it is placed on a location or a carrier.
 
         Raises:
             NoMotion: where a block lies across all cells of a carrier.
         """
+        height = self.arm.height(block, where)
         if target in where.carriers:
             tray, pose = self.arm.tray, where.carriers[target]
-            free = tray.free_cells(pose, where.blocks)
+            free = tray.free_cells(pose, where.blocks, {name: self.arm.height(name, where) for name in where.blocks})
             if not free:
                 raise NoMotion(f"no cell of carrier {target!r} is free")
-            return tray.cell(pose, free[0])
+            return tray.cell(pose, free[0], height)
         slot = where.slots[target]
-        return standing(slot.x, slot.y, (len(state.piles[target]) + 0.5) * self.arm.side, slot.angle)
+        return standing(slot.x, slot.y, self.arm.on_top(state.piles[target], height, where), slot.angle)
 
     def _foresee(self, action: Action, state: State, where: Geometry) -> None:
         """Move the known poses on from `state`; a block in the hand keeps its entry: it is known to be held."""
         match action:
             case Place(block, target):
-                where.blocks[block] = self.stand(target, state, where)
+                size, lay = self.arm.size(block), where.blocks.get(block)
+                if not size.is_cube and (lay is None or not size.stands(lay)):
+                    where.unsure.add(block)
+                where.blocks[block] = self.stand(block, target, state, where)
             case Aggregating() if type(action) in MOTIONS:
                 motion = MOTIONS[type(action)]
                 where.areas += motion.areas(self.arm, action, state, where)

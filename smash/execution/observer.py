@@ -19,7 +19,7 @@ class Observer(Protocol):
     """Eyes on one table.
 
     Poses are in the frame of the robot's base: x ahead, y to the left, z upward from the table [m]. A block's position
-    is its centre; a cube's 24 orientations are all the same to whoever asks.
+    is its centre; a cube's 24 orientations are all the same to whoever asks, a box has its height along its z axis.
     """
 
     @property

@@ -12,7 +12,7 @@ from math import hypot, inf
 import numpy as np
 
 from smash.execution.actions.arm_motions import OPEN_SECONDS, OPENINGS, PAUSE, Grip, Segment
-from smash.execution.actions.grasps import CENTRED
+from smash.execution.actions.grasps import CENTRED, Grasp
 from smash.execution.actions.pick_and_place import Approach
 from smash.execution.actions.registry import MOTIONS
 from smash.execution.errors import Blind, OutOfReach, Slip
@@ -31,9 +31,10 @@ from smash.problem.model import TABLE, Aggregating, Pick, Place, State
 from smash.records.episodes import Performed
 
 GRASPED_WITHIN = 0.5
-"""A held block's centre is within this share of its side of the tool."""
+"""A held block's centre is within this share of its footprint's side of the tool."""
 HELD_OPENING = 0.25
-"""Where blocks are not seen exactly, the fingers tell: they stand this share of a side or more from the middle."""
+"""Where blocks are not seen exactly, the fingers tell: they stand this share of a block's width or more from the
+middle."""
 SURE = 3.0
 """A block is taken to be no further from where it is seen than so many standard deviations."""
 WORTH = 0.99
@@ -70,7 +71,6 @@ class Performer:
         self.grounder = grounder
         self.table = table
         self.policy = policy
-        self.side = world.tabletop.side
         self.hand: str | None = None
         self.grasp = CENTRED
         self.retries = 0
@@ -105,7 +105,7 @@ class Performer:
         if self.sight.exact:
             return
         self.look()
-        most, before = self.world.robot.hand.opening - self.side / 2, inf
+        most, before = self.world.robot.hand.opening - self.world.tabletop.size(block).footprint / 2, inf
         while (beside := SURE * self.sight.spread(block)) > OPENINGS[0] and beside < WORTH * before:
             before = beside
             self.world.wait(LOOK_SECONDS)
@@ -152,7 +152,7 @@ class Performer:
         match task.action:
             case Pick(block, _):
                 follow(self.world, segments)
-                self._require_grasp(block)
+                self._require_grasp(block, task.grasp)
                 self.hand, self.grasp = block, task.grasp
             case Place(block, target):
                 follow(self.world, segments)
@@ -169,7 +169,11 @@ class Performer:
         The open pipeline makes as many motions as the action was meant to take, and no more.
         """
         motion = MOTIONS[type(action)]
-        most = MOST_MOTIONS if self.policy.repair else motion.motions(action, self.observe())
+        most = (
+            MOST_MOTIONS
+            if self.policy.repair
+            else motion.motions(self.grounder.arm, action, self.observe(), self.look())
+        )
         for number in range(1, most + 1):
             follow(self.world, segments)
             self.world.settle()
@@ -234,13 +238,13 @@ class Performer:
         scene = self.grounder.arm.scene(where.blocks, where.carriers)
         return all(move.free(scene, SCENE_ALLOWANCE) for move in moves)
 
-    def _require_grasp(self, block: str) -> None:
+    def _require_grasp(self, block: str, grasp: Grasp) -> None:
         """Raise `Slip`, the hand opened, unless the block is between the fingers."""
         away = float(np.linalg.norm(self.look().blocks[block].position - self.world.tool_position()))
-        holds = self.world.fingers().mean() > HELD_OPENING * self.side
-        if away < GRASPED_WITHIN * self.side if self.sight.exact else holds:
+        holds = self.world.fingers().mean() > HELD_OPENING * grasp.width
+        if away < GRASPED_WITHIN * self.world.tabletop.size(block).footprint if self.sight.exact else holds:
             return
-        self.world.grip(self.side / 2 + OPENINGS[0], OPEN_SECONDS)
+        self.world.grip(self.grounder.arm.opening(grasp.width), OPEN_SECONDS)
         raise Slip(f"block {block!r} is {away * 100:.1f} cm from the fingers after the grasp")
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from smash.execution.actions.arm_motions import PAUSE, ArmMotions, duration
 from smash.execution.actions.grasps import CENTRED, Grasp
-from smash.execution.actions.topple import directions, pushes_needed
+from smash.execution.actions.topple import cubes_high, directions, falling_cubes, pushes_needed
 from smash.execution.grounding import Grounder, Task
 from smash.execution.scene.block_pose import standing
 from smash.execution.scene.geometry import Geometry
@@ -109,7 +109,9 @@ class _Run:
         slot = self._where.slots[action.location]
         fallen = state.piles[action.location][action.height - 1 :]
         others = [pose for name, pose in self._where.blocks.items() if name not in state.piles[action.location]]
-        way = directions(slot, len(fallen), others, self._rehearsal.tabletop.side)[0]
+        tabletop, arm = self._rehearsal.tabletop, self._grounder.arm
+        tall = cubes_high(arm, state.piles[action.location], self._where)
+        way = directions(slot, falling_cubes(tall[action.height - 1 :]), others, tabletop.longest)[0]
         model = self._rehearsal.model
         trials = model.trials(action.height, len(fallen)) if model is not None else ()
         trials = tuple(trial for trial in trials if trial.landed)
@@ -122,10 +124,10 @@ class _Run:
         for level, block in enumerate(fallen):
             landed = drawn.landed[min(level, len(drawn.landed) - 1)]
             x, y = slot.point(landed.along, landed.aside, way)
-            self._where.blocks[block] = standing(x, y, self._rehearsal.tabletop.side / 2, slot.angle)
+            self._where.blocks[block] = standing(x, y, tabletop.size(block).height / 2, slot.angle)
         if planned is None:
             return None
-        if pushes_needed(action.height, len(state.piles[action.location])) > 1:
+        if pushes_needed(action.height, tall) > 1:
             return drawn.seconds
         return duration(planned.segments or ()) + SETTLING
 
@@ -133,7 +135,7 @@ class _Run:
         planned, waited = self._planned(task, state), 0.0
         if isinstance(task.action, Place):
             target = task.action.target
-            self._where.blocks[task.action.block] = self._grounder.stand(target, state, self._where)
+            self._where.blocks[task.action.block] = self._grounder.stand(task.action.block, target, state, self._where)
             waited = PAUSE
         return None if planned is None else duration(planned.segments or ()) + waited
 

@@ -48,7 +48,7 @@ class Sight:
         self._world = world
         self._chance = chance
         self._noise = chance.noise
-        self._side = world.tabletop.side
+        self._tabletop = world.tabletop
         self._seen: dict[str, _Known] = {}
         self._last = -1.0
         self._camera = np.append(self._noise.camera * chance.glance("camera", 2), 0.0)
@@ -66,7 +66,7 @@ class Sight:
         for block, pose in self._world.poses().items():
             if anew or block not in self._seen:
                 self._look(block, pose)
-        return {block: self._told(known) for block, known in self._seen.items()}
+        return self._told()
 
     def carriers(self) -> dict[str, BlockPose]:
         """Poses of all carriers, which are seen as they are."""
@@ -76,7 +76,7 @@ class Sight:
         """How far a side of a block may be from where it is seen, a standard deviation [m]."""
         looks = self._seen[block].looks if block in self._seen else 1
         pose, yaw = self._noise.pose / sqrt(looks), self._noise.yaw / sqrt(looks)
-        return hypot(pose, self._noise.camera, yaw * self._side / 2)
+        return hypot(pose, self._noise.camera, yaw * self._tabletop.size(block).footprint / 2)
 
     def forget(self, blocks: Iterable[str]) -> None:
         """Know nothing any more of blocks that were meant to move."""
@@ -100,14 +100,36 @@ class Sight:
                 return
         self._seen[block] = _Known(position, rotation)
 
-    def _told(self, known: _Known) -> BlockPose:
-        pose = BlockPose(known.position, yaw_rotation(known.turned) @ known.rotation)
-        ground = self._ground(pose.position)
-        level = round((float(pose.position[2]) - ground) / self._side - 0.5)
-        if level < 0 or pose.tilt > LARGEST_TILT:
-            return pose
-        # What stands upright stands on the table, on a tray or on other blocks: its height is known.
-        return BlockPose(np.append(pose.position[:2], ground + (level + 0.5) * self._side), pose.rotation)
+    def _told(self) -> dict[str, BlockPose]:
+        """Poses of all blocks: how high something is that stands upright, on whatever it stands, is known."""
+        told: dict[str, BlockPose] = {}
+        means = {
+            block: BlockPose(known.position, yaw_rotation(known.turned) @ known.rotation)
+            for block, known in self._seen.items()
+        }
+        standing: list[str] = []
+        for block in sorted(means, key=lambda block: float(means[block].position[2])):
+            pose = means[block]
+            middle = None if pose.tilt > LARGEST_TILT else self._middle(block, pose, [(b, told[b]) for b in standing])
+            told[block] = pose if middle is None else BlockPose(np.append(pose.position[:2], middle), pose.rotation)
+            if middle is not None:
+                standing.append(block)
+        return {block: told[block] for block in means}
+
+    def _middle(self, block: str, pose: BlockPose, lower: Iterable[tuple[str, BlockPose]]) -> float | None:
+        """How high the middle of an upright block is [m], on the ground or on a lower one; None: in the air."""
+        ground, size = self._ground(pose.position), self._tabletop.size(block)
+        height, seen = size.upright(pose), float(pose.position[2])
+        if self._tabletop.uniform:
+            level = round((seen - ground) / height - 0.5)
+            return None if level < 0 else ground + (level + 0.5) * height
+        tops = [ground]
+        for other, stands in lower:
+            below = self._tabletop.size(other)
+            if hypot(*(pose.position - stands.position)[:2]) < (size.footprint + below.footprint) / 2:
+                tops.append(float(stands.position[2]) + below.upright(stands) / 2)
+        middle = min((top + height / 2 for top in tops), key=lambda known: abs(known - seen))
+        return middle if abs(middle - seen) < height / 2 else None
 
     def _ground(self, place: Vector) -> float:
         """The height of what the lowest block at a place stands on [m]: the board of a tray, or the table."""

@@ -8,7 +8,7 @@ from smash.records.episodes import Arrangement, Episode, Performed, Times, Total
 
 def recording_of(blocks, seconds=1.0, interval=0.08):
     """The arm at rest, the blocks in a row that slides."""
-    taken = Recording()
+    taken = Recording(names=[f"b{n}" for n in range(blocks)])
     for moment in np.arange(0.0, seconds + interval / 2, interval):
         row = [[0.3 + 0.02 * moment, 0.06 * n, 0.0225, 0, 0, 0, 1] for n in range(blocks)]
         taken.times.append(float(moment))

@@ -91,6 +91,23 @@ def test_bad_arguments_get_one_line(filed, arguments, code):
     assert ended.stderr.count("\n") == 1
 
 
+def test_a_size_for_a_block_that_the_instance_has_not_is_said_in_one_line_and_no_error(filed):
+    """Here the start with a full hand is what ends it."""
+    test_a_start_with_a_full_hand_is_one_line_and_exit_6(filed)
+    sizes = DEFAULT_SCENE.read_text() + "\n[blocks]\na = {height = 0.04}\nc = {height = 0.05}\n"
+    (filed / "scene.toml").write_text(sizes)
+    ended = execute(filed, "--scene", "scene.toml")
+    said = "scene 'default' has sizes for blocks that instance 'full' has not: 'c'"
+    assert (ended.returncode, ended.stderr.splitlines()[0]) == (6, said)
+
+
+def test_a_block_that_the_hand_cannot_hold_is_one_line_with_its_name_and_exit_2(filed):
+    (filed / "scene.toml").write_text(DEFAULT_SCENE.read_text() + "\n[blocks]\na = {footprint = 0.09}\n")
+    ended = execute(filed, "--scene", "scene.toml")
+    assert (ended.returncode, ended.stdout, ended.stderr.count("\n")) == (2, "", 1)
+    assert "`blocks.a.footprint`: 0.09 m is not allowed; 0.03 to 0.07" in ended.stderr
+
+
 def test_a_plan_that_the_law_refuses_is_not_executed(filed):
     write_plan(plan_of("buried", *buried_plan().actions[1:]), filed / "plan.json")
     ended = execute(filed)

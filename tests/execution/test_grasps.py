@@ -11,7 +11,7 @@ SIDE = 0.045
 
 def block_in_hand(grasp, tool):
     """The pose of the block that the hand holds, in the world."""
-    held = grasp.hand(SIDE).attached
+    held = grasp.of((SIDE, SIDE, SIDE)).hand().attached
     return BlockPose(tool.position + tool.rotation @ held.translations[0], tool.rotation @ held.rotations[0])
 
 

@@ -104,7 +104,7 @@ def test_blocks_stand_as_high_as_the_law_says(grounder):
     """After the plan's first pile of one, the next block on it stands one and a half sides high."""
     instance = swapped_pair()
     *_, state = Law(instance).states([Pick("b", "s2"), Place("b", "s1")])
-    stand = grounder.stand("s1", state, laid_out(instance))
+    stand = grounder.stand("a", "s1", state, laid_out(instance))
     assert stand.position[2] == pytest.approx(1.5 * SCENE.side)
 
 

@@ -97,7 +97,7 @@ def test_blocks_of_other_sizes_stand_on_one_another_at_the_start():
     scene = scene_of(noise="size=1mm,placement=3mm")
     chance = Chance(scene, instance, 0)
     poses = chance.at_start(starting_poses(instance, scene.bind(instance), scene, np.random.default_rng(0)))
-    sides = [chance.made[block].side for block in "abcd"]
+    sides = [chance.made[block].height for block in "abcd"]
     assert max(sides) > min(sides)
     assert all(abs(side - scene.side) <= 0.001 for side in sides)
     tops = [float(poses[block].position[2]) + side / 2 for block, side in zip("abcd", sides, strict=True)]

@@ -19,6 +19,7 @@ from smash.motion.obstacles import HandState
 from tests.robots import PANDA, READY
 
 SIDE = 0.045
+CUBE = (SIDE, SIDE, SIDE)
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +83,7 @@ def test_a_block_at_the_foot_of_a_tower_is_taken_beside_its_middle_and_put_down_
     target = standing(*default_scene().stacks[2].point(0.0, 0.0, "outward"), 1.5 * SIDE, 0.2)
     way = hand.landing(moves[-1].path.end, "a", target, scene, grasp)
     tool = PANDA.forward(way.line.end)
-    held = grasp.hand(SIDE).attached
+    held = grasp.hand().attached
     stands = tool.position + tool.rotation @ held.translations[0]
     assert way.grasp == grasp
     assert np.allclose(stands[:2], target.position[:2], atol=1e-4)
@@ -103,7 +104,7 @@ def test_a_block_held_beside_its_middle_or_leaning_stands_where_it_shall_then(ar
         way = hand.landing(world.commanded(), "a", target, scene, held)
         follow(world, hand.place(world.commanded(), "a", way, scene))
         world.settle()
-        assert held == grasp
+        assert held == grasp.of(CUBE)
         assert world.touched() == []
         assert np.linalg.norm(world.pose("a").position - target.position) < 0.003
         assert world.pose("a").tilt < 0.02
@@ -112,7 +113,7 @@ def test_a_block_held_beside_its_middle_or_leaning_stands_where_it_shall_then(ar
 
 def test_a_block_that_stands_free_is_taken_by_its_middle(arm, hand):
     block = standing(0.45, 0.1, SIDE / 2, 0.3)
-    assert hand.pick(READY, "a", block, arm.scene({"a": block}))[1] == CENTRED
+    assert hand.pick(READY, "a", block, arm.scene({"a": block}))[1] == CENTRED.of(CUBE)
 
 
 def test_a_block_at_the_foot_of_a_tower_has_no_centred_grasp(arm):
@@ -120,7 +121,7 @@ def test_a_block_at_the_foot_of_a_tower_has_no_centred_grasp(arm):
     block, walls = tower_beside(0.050)
     scene = arm.scene(walls)
     hands = [CENTRED.tool(block.position, block.yaw + turn * QUARTER) for turn in range(4)]
-    checker = CollisionChecker(PANDA, scene, HandState(min(arm.openings)), CONTACT_MARGIN)
+    checker = CollisionChecker(PANDA, scene, HandState(arm.opening(SIDE, min(arm.rooms))), CONTACT_MARGIN)
     assert not any(checker.free(joints) for tool in hands for joints in inverse(PANDA, tool, READY, count=3))
 
 

@@ -17,6 +17,7 @@ from smash.execution.actions.topple import (
     topple,
 )
 from smash.execution.scene.block_pose import standing
+from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.scene.tabletop import Slot
 from smash.motion.move import Move
@@ -28,13 +29,13 @@ def test_pushes_from_the_top_take_all_that_shall_fall_and_no_push_too_much(heigh
     top = height + falling - 1
     pushes = 0
     while top >= height:
-        cut = first_cut(height, top)
+        cut = first_cut(height, [1.0] * top)
         assert height <= cut <= top
         assert top - cut + 1 <= (MOST_SWEPT if cut == 1 else MOST_CUT)
         top = cut - 1
         pushes += 1
     assert pushes <= (3 if height > 1 or falling > MOST_SWEPT else 1)
-    assert pushes_needed(height, height + falling - 1) == pushes
+    assert pushes_needed(height, [1.0] * (height + falling - 1)) == pushes
 
 
 def test_the_direction_whose_strip_is_emptier_comes_first():
@@ -52,7 +53,8 @@ def test_a_push_meets_the_pile_at_the_speed_that_its_manner_asks_for_as_far_as_t
     scene = default_scene()
     slot, pile = scene.stacks[1], tuple(f"b{level}" for level in range(height + falling - 1))
     poses = {b: standing(slot.x, slot.y, (level + 0.5) * scene.side, slot.angle) for level, b in enumerate(pile)}
-    moves = [move for move in topple(ArmMotions(scene), READY, slot, pile, height, poses) if isinstance(move, Move)]
+    segments = topple(ArmMotions(scene), READY, slot, pile, height, Geometry({"s": slot}, blocks=poses))
+    moves = [move for move in segments if isinstance(move, Move)]
     push = next(move for move in moves if move.margin == PUSH_MARGIN and move.ignored)
     over = PANDA.forward(moves[-1].path.end).position[2] - PANDA.hand.tip
     assert over > heap(falling) * scene.side

@@ -323,7 +323,7 @@ def kinds(folder):
             "scene",
             "scene.toml",
             "toml",
-            (SCENE.encode(), _read("examples/scoop-scene.toml")),
+            (SCENE.encode(), _read("examples/scoop-scene.toml"), _read("examples/boxes-scene.toml")),
             (
                 (0.2, "draw-scene {file}"),
                 (0.3, "draw-scene {file} --out {out}/scene.svg"),

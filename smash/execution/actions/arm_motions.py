@@ -7,13 +7,14 @@ revealed. Nothing here knows the simulator.
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from smash.execution.scene.area import Area
 from smash.execution.scene.block_pose import BlockPose
+from smash.execution.scene.block_size import BlockSize, levels
 from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.scene.tray import Tray
@@ -67,7 +68,7 @@ class ArmMotions:
     """Plans the arm's motions in one scene.
 
     Args:
-        tabletop: Blocks, trays, and the share of the arm's limits that motions use.
+        tabletop: Sizes of blocks, trays, and the share of the arm's limits that motions use.
         seed: Of the motion planner.
 
     Attributes:
@@ -77,7 +78,6 @@ class ArmMotions:
 
     def __init__(self, tabletop: Tabletop, seed: int = 0) -> None:
         self.tabletop = tabletop
-        self.side = tabletop.side
         self.pace = Pace(tabletop.velocity, tabletop.acceleration)
         self.robot = load_robot(tabletop.robot)
         self.planner = MotionPlanner(self.robot, seed=seed)
@@ -96,6 +96,7 @@ class ArmMotions:
         blocks: Mapping[str, BlockPose],
         carriers: Mapping[str, BlockPose] | None = None,
         areas: Iterable[Area] = (),
+        unsure: Collection[str] = (),
     ) -> Scene:
         """Blocks, carriers and table as the motion planner sees them.
 
@@ -103,11 +104,14 @@ class ArmMotions:
             blocks: Poses of blocks.
             carriers: Poses of carriers.
             areas: Where blocks may be whose poses nobody knows: solid, as high as they may lie.
+            unsure: Blocks of which nobody knows how they are turned: cubes that they fit into.
         """
         names = list(blocks)
         centres = np.array([blocks[name].position for name in names]).reshape(-1, 3)
         rotations = np.array([blocks[name].rotation for name in names]).reshape(-1, 3, 3)
-        scene = Scene.of_boxes(names, centres, self.side / 2, rotations)
+        sizes = {name: self.size(name) for name in names}
+        half = [np.full(3, size.longest / 2) if name in unsure else size.half for name, size in sizes.items()]
+        scene = Scene.of_boxes(names, centres, np.array(half).reshape(-1, 3), rotations)
         for name, pose in (carriers or {}).items():
             scene = scene.joined(self.tray.scene(name, pose))
         for area in areas:
@@ -116,7 +120,25 @@ class ArmMotions:
 
     def around(self, where: Geometry) -> Scene:
         """All that is known of where things are, as the motion planner sees it."""
-        return self.scene(where.blocks, where.carriers, where.areas)
+        return self.scene(where.blocks, where.carriers, where.areas, where.unsure)
+
+    def size(self, block: str) -> BlockSize:
+        """How large a block is."""
+        return self.tabletop.size(block)
+
+    def height(self, block: str, where: Geometry) -> float:
+        """How high a block stands on the face that it lies on, or at most, where nobody knows that [m].
+
+        A block of which nothing is known yet is taken to stand as it did at the start.
+        """
+        size, pose = self.size(block), where.blocks.get(block)
+        if block in where.unsure:
+            return size.longest
+        return size.height if pose is None else size.upright(pose)
+
+    def on_top(self, pile: Iterable[str], height: float, where: Geometry) -> float:
+        """Height of the middle of a block that stands on a pile, itself `height` high [m]."""
+        return (levels((self.height(block, where) for block in pile), height) + 0.5) * height
 
     @property
     def tray(self) -> Tray:
@@ -125,14 +147,16 @@ class ArmMotions:
         return self.tabletop.tray
 
     @property
-    def openings(self) -> tuple[float, ...]:
-        """How far the fingers are open around a block, from the middle [m], the widest first.
+    def rooms(self) -> tuple[float, ...]:
+        """Room between each finger and a block before it is grasped [m], the widest first.
 
-        Where blocks are not exactly where they are seen, that is as wide as the hand opens.
+        Where blocks are not exactly where they are seen, that is as much as the hand has.
         """
-        widest = self.robot.hand.opening
-        rooms = (widest, *OPENINGS) if self.tabletop.noise.sees else OPENINGS
-        return tuple(min(widest, self.side / 2 + room) for room in rooms)
+        return (self.robot.hand.opening, *OPENINGS) if self.tabletop.noise.sees else OPENINGS
+
+    def opening(self, width: float, room: float = OPENINGS[0]) -> float:
+        """How far each finger is open around what is `width` wide, with so much room where there is [m]."""
+        return min(self.robot.hand.opening, width / 2 + room)
 
     @property
     def release_height(self) -> float:

@@ -63,8 +63,8 @@ class AggregateMotion(ABC, Generic[A]):
         """
         return ()
 
-    def motions(self, action: A, state: State) -> int:
-        """Return how many motions the action is meant to take from the law's state before it."""
+    def motions(self, arm: ArmMotions, action: A, state: State, where: Geometry) -> int:
+        """Return how many motions the action is meant to take (the arguments are those of `plan`)."""
         return 1
 
     def unfinished(self, action: A, state: State) -> bool:

@@ -16,7 +16,6 @@ from smash.execution.actions.arm_motions import (
     CLOSE_SECONDS,
     ENOUGH_CLEARANCE,
     OPEN_SECONDS,
-    OPENINGS,
     RELEASE_HEIGHT,
     ArmMotions,
     Grip,
@@ -24,6 +23,7 @@ from smash.execution.actions.arm_motions import (
 )
 from smash.execution.actions.kind import AggregateMotion
 from smash.execution.scene.block_pose import QUARTER, BlockPose, standing
+from smash.execution.scene.block_size import BlockSize, levels
 from smash.execution.scene.geometry import Geometry
 from smash.motion.collision import CONTACT_MARGIN, CollisionChecker
 from smash.motion.errors import NoIk, NoMotion
@@ -93,9 +93,14 @@ class LiftMotion(AggregateMotion[Lift]):
 
     def foresee(self, arm: ArmMotions, action: Lift, state: State, where: Geometry) -> None:
         """Move the blocks to the other pile."""
-        lowest = _target(arm, action, state, where)
-        for level, block in enumerate(_lifted(action, state)):
-            where.blocks[block] = BlockPose(lowest.position + np.array([0.0, 0.0, level * arm.side]), lowest.rotation)
+        lowest, below = _target(arm, action, state, where), list[float]()
+        for block in _lifted(action, state):
+            size, height = arm.size(block), arm.height(block, where)
+            rise = levels(below, height) * height + (height - (below or [height])[0]) / 2
+            if not size.stands(where.blocks[block]):
+                where.unsure.add(block)
+            where.blocks[block] = BlockPose(lowest.position + np.array([0.0, 0.0, rise]), lowest.rotation)
+            below.append(height)
 
     def places(self, action: Lift) -> tuple[str, ...]:
         """Return both locations."""
@@ -118,8 +123,8 @@ def _lifted(action: Lift, state: State) -> list[str]:
 
 def _target(arm: ArmMotions, action: Lift, state: State, where: Geometry) -> BlockPose:
     """Where the lowest lifted block shall stand."""
-    slot = where.slots[action.target]
-    return standing(slot.x, slot.y, (len(state.piles[action.target]) + 0.5) * arm.side, slot.angle)
+    slot, height = where.slots[action.target], arm.height(_lifted(action, state)[0], where)
+    return standing(slot.x, slot.y, arm.on_top(state.piles[action.target], height, where), slot.angle)
 
 
 def _hand_rotation(azimuth: float, tilt: float, side: float) -> Matrix:
@@ -138,12 +143,13 @@ def _grasps(
         NoIk: where the arm reaches it from no side.
         NoMotion: where the hand has no room at one of the ends.
     """
-    opened = HandState(arm.side / 2 + OPENINGS[0])
+    size = arm.size(lifted[0])
+    opened = HandState(arm.opening(size.footprint))
     here = CollisionChecker(arm.robot, scene.without(lifted[:1]), opened, 0.0)
     there = CollisionChecker(arm.robot, scene.without(lifted), opened, 0.0)
     found: list[_Grasp] = []
     reached = False
-    for tool in _holds(pose):
+    for tool in _holds(pose, size):
         for joints in inverse(arm.robot, tool, start, count=SOLUTIONS):
             reached = True
             room = here.slack(joints)
@@ -161,9 +167,12 @@ def _grasps(
     return sorted(found, key=lambda grasp: (-min(grasp.room, ENOUGH_CLEARANCE), grasp.far))
 
 
-def _holds(pose: BlockPose) -> Iterator[ToolPose]:
-    """Tool poses that hold a block from its four sides."""
+def _holds(pose: BlockPose, size: BlockSize) -> Iterator[ToolPose]:
+    """Tool poses that hold a block from its four sides, or from the two that the fingers close across its footprint."""
+    along, across, _ = size.extents(pose)
     for quarter in range(4):
+        if (along if quarter % 2 else across) != size.footprint:
+            continue
         for tilt in TILTS:
             for side in (1.0, -1.0):
                 rotation = _hand_rotation(pose.yaw + quarter * QUARTER, tilt, side)
@@ -190,12 +199,13 @@ def _with_grasp(arm: ArmMotions, start: Vector, grasp: _Grasp, lifted: list[str]
         NoIk, NoMotion: where there are none.
     """
     moved: frozenset[BodyName] = frozenset(lifted)
-    rest, opened = scene.without(moved), HandState(arm.side / 2 + OPENINGS[0])
+    width = arm.size(lifted[0]).footprint
+    rest, opened = scene.without(moved), HandState(arm.opening(width))
     joints, goal = grasp.joints, grasp.goal
     tool = arm.robot.forward(joints)
     back = -RUN_UP * tool.rotation[:, 2]
     way_in = arm.planner.line(joints, back, scene.without(lifted[:1]), hand=opened).reversed()
-    held = HandState(arm.side / 2, Attached.of_scene(scene.only_of(moved), tool))
+    held = HandState(width / 2, Attached.of_scene(scene.only_of(moved), tool))
     friction = arm.tabletop.friction.block
     way: list[Move] = level_way(
         arm.planner, joints, goal, rest, held, moved, Gentleness.of_friction(friction, friction)

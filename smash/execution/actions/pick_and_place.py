@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -12,6 +12,7 @@ from smash.execution.actions.arm_motions import (
     CLOSE_SECONDS,
     ENOUGH_CLEARANCE,
     OPEN_SECONDS,
+    OPENINGS,
     ArmMotions,
     Grip,
     Segment,
@@ -24,6 +25,7 @@ from smash.motion.kinematics import inverse
 from smash.motion.obstacles import BodyName, HandState, Scene
 from smash.motion.paths import Path
 from smash.motion.poses import Vector
+from smash.motion.robot import Hand
 from smash.problem.errors import ExecutionFailure
 
 HOVERS = (0.10, 0.06, 0.03)
@@ -43,13 +45,13 @@ class Approach:
         line: From above down to the contact.
         opening: Of the fingers when they are open there [m].
         clearance: Room between hand or fingers and everything else [m].
-        grasp: Where the hand is on the block there.
+        grasp: Where the hand is on which block there.
     """
 
     line: Path
     opening: float
     clearance: float
-    grasp: Grasp = CENTRED
+    grasp: Grasp
 
 
 class PickAndPlace:
@@ -74,7 +76,7 @@ class PickAndPlace:
         problem: ExecutionFailure | None = None
         for (room, alone), grasp in product(RESORTS, GRASPS):
             try:
-                return self._pick(start, block, pose, scene, grasp, room, alone), grasp
+                return self._pick(start, block, pose, scene, grasp, room, alone)
             except ExecutionFailure as failure:
                 problem = problem or failure
         assert problem is not None
@@ -82,15 +84,17 @@ class PickAndPlace:
 
     def _pick(
         self, start: Vector, block: str, pose: BlockPose, scene: Scene, grasp: Grasp, room: float, alone: bool
-    ) -> list[Segment]:
+    ) -> tuple[list[Segment], Grasp]:
         """With one grasp and so much room for the hand; `alone`: without shaking off what leans on the block.
 
         Raises:
             NoIk, NoMotion: where there is no motion for it.
         """
         near = scene.without([block])
+        along, across, upright = self._arm.size(block).extents(pose)
+        ways = [grasp.of((along, across, upright)), grasp.of((across, along, upright))] * 2
         problem: ExecutionFailure | None = None
-        for approach in self._approaches(start, pose.position, pose.yaw, near, grasp, room, alone):
+        for approach in self._approaches(start, pose.position, pose.yaw, near, ways, room, alone):
             open_hand = HandState(approach.opening)
             try:
                 transfer = self._arm.transfer(start, approach.line.start, scene, open_hand)
@@ -98,27 +102,28 @@ class PickAndPlace:
                 problem = problem or failure
                 continue
             down = self._arm.move(approach.line, open_hand, frozenset([block]), CONTACT_MARGIN)
-            up = self._arm.back(down, grasp.hand(self._arm.side))
-            return [*transfer, down, Grip(0.0, CLOSE_SECONDS), up]
+            up = self._arm.back(down, approach.grasp.hand())
+            return [*transfer, down, Grip(0.0, CLOSE_SECONDS), up], approach.grasp
         raise problem or NoMotion(f"no room for the hand around block {block!r}")
 
     def landing(self, start: Vector, block: str, target: BlockPose, scene: Scene, grasp: Grasp = CENTRED) -> Approach:
-        """The way down to where a block, which is in the hand, shall stand.
+        """The way down to where a block, which is in the hand, shall stand, turned to any side.
 
         Args:
             start: Where the arm is [rad], shape (n,).
             block: What is in the hand.
             target: Where it shall stand.
             scene: Everything.
-            grasp: How the hand holds it.
+            grasp: How the hand holds it; where nobody has seen it yet, as it stood at the start.
 
         Raises:
             NoIk, NoMotion: where there is none.
         """
         point = target.position + np.array([0.0, 0.0, self._arm.release_height])
         near = scene.without([block])
+        held = grasp if grasp.extents else grasp.of(self._arm.size(block).edges)
         for room in (ROOM, CONTACT_MARGIN):
-            for approach in self._approaches(start, point, target.yaw, near, grasp, room, True):
+            for approach in self._approaches(start, point, target.yaw, near, [held] * 4, room, True):
                 return approach
         x, y, z = (float(value) for value in target.position)
         raise NoMotion(f"no room for the hand to put a block down at x {x:.2f}, y {y:.2f}, z {z:.2f} m")
@@ -133,7 +138,7 @@ class PickAndPlace:
             allowance: How much closer than planned it may come [m].
         """
         near, waypoints = scene.without([block]), approach.line.waypoints
-        hands = (approach.grasp.hand(self._arm.side), HandState(approach.opening))
+        hands = (approach.grasp.hand(), HandState(approach.opening))
         robot, margin = self._arm.robot, CONTACT_MARGIN - allowance
         return all(CollisionChecker(robot, near, hand, margin).path_free(waypoints) for hand in hands)
 
@@ -144,7 +149,7 @@ class PickAndPlace:
             NoMotion: where the way there is blocked.
         """
         touched: frozenset[BodyName] = frozenset([block])
-        holding = approach.grasp.hand(self._arm.side)
+        holding = approach.grasp.hand()
         transfer = self._arm.transfer(start, approach.line.start, scene, holding, touched)
         down = self._arm.move(approach.line, holding, touched, CONTACT_MARGIN)
         up = self._arm.back(down, HandState(approach.opening))
@@ -156,7 +161,7 @@ class PickAndPlace:
         point: Vector,
         yaw: float,
         near: Scene,
-        grasp: Grasp,
+        grasps: Sequence[Grasp],
         room: float,
         loaded: bool,
     ) -> Iterable[Approach]:
@@ -167,32 +172,42 @@ class PickAndPlace:
             point: [m], shape (3,).
             yaw: Of a side of the block [rad].
             near: All else.
-            grasp: Where the hand is on the block.
+            grasps: Where the hand is on the block, and how that is turned in it, for each of the four sides.
             room: The least between the open hand and all else [m].
             loaded: Whether the way must be free with the block in the hand too.
 
         Raises:
             NoIk: where the arm cannot reach the point from above.
         """
-        poses = [grasp.tool(point, yaw + turn * QUARTER) for turn in range(4)]
         robot = self._arm.robot
-        solutions = [joints for pose in poses for joints in inverse(robot, pose, start, count=SOLUTIONS)]
+        tools = [
+            (grasp.tool(point, yaw + turn * QUARTER), grasp)
+            for turn, grasp in enumerate(grasps)
+            if _fits(robot.hand, grasp)
+        ]
+        solutions = [
+            (joints, grasp) for tool, grasp in tools for joints in inverse(robot, tool, start, count=SOLUTIONS)
+        ]
         if not solutions:
             raise NoIk(f"the hand cannot reach x {point[0]:.3f}, y {point[1]:.3f}, z {point[2]:.3f} m from above")
         ranked = []
-        for opening in self._arm.openings:
-            checker = CollisionChecker(robot, near, HandState(opening), 0.0)
-            for joints in solutions:
-                clearance = checker.slack(joints)
+        for beside in self._arm.rooms:
+            openings = {grasp.width: self._arm.opening(grasp.width, beside) for _, grasp in solutions}
+            checkers = {
+                width: CollisionChecker(robot, near, HandState(opening), 0.0) for width, opening in openings.items()
+            }
+            for joints, grasp in solutions:
+                clearance = checkers[grasp.width].slack(joints)
                 if clearance > room:
                     far = float(np.abs(joints - start).max())
-                    ranked.append((-min(clearance, ENOUGH_CLEARANCE), -opening, far, clearance, joints))
-            if any(entry[0] <= -ENOUGH_CLEARANCE for entry in ranked):
+                    rank = (-min(clearance, ENOUGH_CLEARANCE), -openings[grasp.width], far)
+                    ranked.append((rank, clearance, joints, grasp))
+            if any(rank[0] <= -ENOUGH_CLEARANCE for rank, *_ in ranked):
                 break
-        ranked.sort(key=lambda entry: entry[:3])
-        back = grasp.hand(self._arm.side) if loaded else None
+        ranked.sort(key=lambda entry: entry[0])
         for height in HOVERS:
-            for _, negative, _, clearance, joints in ranked:
+            for (_, negative, _), clearance, joints, grasp in ranked:
+                back = grasp.hand() if loaded else None
                 line = self._line_down(joints, height, near, HandState(-negative), back)
                 if line is not None:
                     yield Approach(line, -negative, clearance, grasp)
@@ -205,3 +220,8 @@ class PickAndPlace:
             return self._arm.planner.line(joints, (0.0, 0.0, height), near, hand=empty, back=back).reversed()
         except ExecutionFailure:
             return None
+
+
+def _fits(hand: Hand, grasp: Grasp) -> bool:
+    """Whether the open hand has room for the block: between its fingers and before its palm."""
+    return grasp.width / 2 + OPENINGS[-1] <= hand.opening + 1e-9 and grasp.clears(hand.palm_depth)

@@ -7,6 +7,8 @@ slots and of trays at all stations, in one of the four yaws, and the arm must re
 *Monotone transformation non-interactivity*: toppled blocks can be picked in any order, and they lie in a region
 disjoint from the stack locations. Checked by the landing strips: no slot and no station lies in one, and the arm
 reaches them. That toppled blocks leave each other room is a matter of physics: `smash topple-map` measures it.
+
+Where blocks differ, full piles are the highest that there are, and as wide as the widest block.
 """
 
 from __future__ import annotations
@@ -17,8 +19,9 @@ from math import pi
 import numpy as np
 
 from smash.execution.actions.arm_motions import OPENINGS
-from smash.execution.actions.topple import strip
+from smash.execution.actions.topple import falling_cubes, strip
 from smash.execution.scene.block_pose import QUARTER, standing
+from smash.execution.scene.block_size import levels
 from smash.execution.scene.tabletop import Slot, Tabletop
 from smash.motion.collision import CONTACT_MARGIN, CollisionChecker
 from smash.motion.kinematics import inverse
@@ -48,6 +51,11 @@ class Violation:
 
     def __str__(self) -> str:
         return f"{self.condition}: {self.slot}: {self.problem}"
+
+
+def fallen_cubes(tabletop: Tabletop, slot: Slot) -> int:
+    """How many cubes the highest blocks of a scene count as when so many of them as a slot's strips are for fall."""
+    return falling_cubes([size.height / tabletop.cube for size in tabletop.greatest_heap(falling(slot))])
 
 
 def violations(tabletop: Tabletop, height: int | None = None, buffer_height: int | None = None) -> list[Violation]:
@@ -85,24 +93,25 @@ def falling(slot: Slot) -> int:
 
 
 def _interactive(tabletop: Tabletop, named: dict[str, Slot], name: str, full: dict[str, int]) -> list[Violation]:
-    condition, slot, side = "non-interactivity", named[name], tabletop.side
+    condition, slot, wide = "non-interactivity", named[name], tabletop.widest
     height = full[name]
-    others = [(other, full[key]) for key, other in named.items() if key != name]
-    poses = [standing(o.x, o.y, (level + 0.5) * side, o.angle) for o, count in others for level in range(count)]
+    middles, heights = _column(tabletop, max(full.values()))
+    others = [(other, level) for key, other in named.items() if key != name for level in range(full[key])]
+    poses = [standing(o.x, o.y, middles[level], o.angle) for o, level in others]
     scene = Scene.of_boxes(
         [f"block {index}" for index in range(len(poses))],
         np.array([pose.position for pose in poses]).reshape(-1, 3),
-        side / 2,
+        np.array([[wide / 2, wide / 2, heights[level] / 2] for _, level in others]).reshape(-1, 3),
         np.array([pose.rotation for pose in poses]).reshape(-1, 3, 3),
     )
     for index, station in enumerate(tabletop.stations):
         assert tabletop.tray is not None
         scene = scene.joined(tabletop.tray.scene(f"stations[{index}]", tabletop.tray_at(station)))
     robot = load_robot(tabletop.robot)
-    hand = HandState(min(robot.hand.opening, side / 2 + OPENINGS[-1]))
+    hand = HandState(min(robot.hand.opening, wide / 2 + OPENINGS[-1]))
     checker = CollisionChecker(robot, scene, hand, CONTACT_MARGIN)
     for level in sorted({1, (height + 1) // 2, height}):
-        point = (slot.x, slot.y, (level - 0.5) * side)
+        point = (slot.x, slot.y, middles[level - 1])
         solutions = [
             joints
             for turn in range(4)
@@ -117,6 +126,12 @@ def _interactive(tabletop: Tabletop, named: dict[str, Slot], name: str, full: di
     return []
 
 
+def _column(tabletop: Tabletop, count: int) -> tuple[list[float], list[float]]:
+    """Heights of the middles of the blocks of the highest pile of so many, lowest first, and their own heights [m]."""
+    heights = [size.height for size in tabletop.greatest_heap(count)]
+    return [(levels(heights[:level], own) + 0.5) * own for level, own in enumerate(heights)], heights
+
+
 def _nearest(tabletop: Tabletop, named: dict[str, Slot], name: str) -> list[str]:
     slot, all_named = named[name], named | _stations(tabletop)
     others = sorted((other.distance(slot.x, slot.y), key) for key, other in all_named.items() if key != name)
@@ -128,20 +143,21 @@ def _stations(tabletop: Tabletop) -> dict[str, Slot]:
 
 
 def _strip_problems(tabletop: Tabletop, named: dict[str, Slot], name: str, direction: str) -> list[Violation]:
-    condition, slot, side = "monotone transformation", named[name], tabletop.side
+    condition, slot, wide = "monotone transformation", named[name], tabletop.widest
     found = []
-    area, robot = strip(falling(slot)), load_robot(tabletop.robot)
+    area, robot = strip(fallen_cubes(tabletop, slot)), load_robot(tabletop.robot)
     tray = 0.0 if tabletop.tray is None else min(tabletop.tray.size) / 2
-    rooms = {key: (other, side / 2) for key, other in named.items() if key != name}
+    rooms = {key: (other, wide / 2) for key, other in named.items() if key != name}
     rooms |= {key: (station, tray) for key, station in _stations(tabletop).items()}
     for key, (other, half) in rooms.items():
         along, aside = slot.coordinates(other.x, other.y, direction)
         if 0 < along < area.length + half and abs(aside) < area.half_width + half:
             found.append(Violation(condition, name, f"{key} lies in the strip of a {direction} topple"))
     reached = min(area.length, strip(FALLING).length)
-    for along in np.linspace(min(2 * side, reached), reached, STRIP_SAMPLES):
+    for along in np.linspace(min(2 * wide, reached), reached, STRIP_SAMPLES):
         x, y = slot.point(float(along), 0.0, direction)
-        if not any(inverse(robot, top_down((x, y, side / 2), yaw), count=1) for yaw in (0.0, pi / 2)):
+        low = tabletop.block.height / 2
+        if not any(inverse(robot, top_down((x, y, low), yaw), count=1) for yaw in (0.0, pi / 2)):
             problem = f"the {direction} strip is out of reach {100 * float(along):.0f} cm from the stack"
             found.append(Violation(condition, name, problem))
             break

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from smash.execution.actions.topple import strip
-from smash.execution.layout.conditions import falling
+from smash.execution.layout.conditions import fallen_cubes, falling
 from smash.execution.scene.tabletop import Slot, Tabletop
 from smash.motion.robots import load_robot
 
@@ -33,16 +33,16 @@ def draw(tabletop: Tabletop, path: Path) -> None:
     axis.add_patch(Circle((0, 0), 0.08, facecolor="#3b3f45", zorder=3))
     for index, slot in enumerate(tabletop.stacks, start=1):
         for rank, direction in enumerate(slot.directions):
-            _strip(axis, slot, direction, tabletop.side, preferred=rank == 0)
-        _slot(axis, slot, tabletop.side, STACK, _named(f"s{index}", slot))
+            _strip(axis, slot, direction, tabletop, preferred=rank == 0)
+        _slot(axis, slot, tabletop.widest, STACK, _named(f"s{index}", slot))
     for index, slot in enumerate(tabletop.buffers, start=1):
-        _slot(axis, slot, tabletop.side, BUFFER, _named(f"u{index}", slot))
+        _slot(axis, slot, tabletop.widest, BUFFER, _named(f"u{index}", slot))
     for index, slot in enumerate(tabletop.stations, start=1):
         _station(axis, slot, tabletop, f"t{index}")
     axis.set_aspect("equal")
     edge = max([EDGE, *(0.02 + abs(value) for corner in _strip_corners(tabletop) for value in corner)])
     axis.set(xlim=(-edge, edge), ylim=(-edge, edge), xlabel="x [m]", ylabel="y [m]")
-    axis.set_title(f"Scene {tabletop.name!r}: blocks of {100 * tabletop.side:.1f} cm, to scale")
+    axis.set_title(f"Scene {tabletop.name!r}: {_blocks(tabletop)}, to scale")
     trays = [Patch(facecolor="none", edgecolor=TRAY, label="station of a tray")] if tabletop.stations else []
     has_second = any(len(slot.directions) > 1 for slot in tabletop.stacks)
     fallen = _fallen(tabletop)
@@ -102,20 +102,30 @@ def _slot(axis: Any, slot: Slot, side: float, colour: str, name: str) -> None:
 def _strip_corners(tabletop: Tabletop) -> list[tuple[float, float]]:
     """Corners of all strips [m]."""
     ways = [(slot, direction) for slot in tabletop.stacks for direction in slot.directions]
-    return [corner for slot, direction in ways for corner in _outline(slot, direction, tabletop.side)]
+    return [corner for slot, direction in ways for corner in _outline(slot, direction, tabletop)]
 
 
-def _outline(slot: Slot, direction: str, side: float) -> list[tuple[float, float]]:
-    area = strip(falling(slot))
+def _outline(slot: Slot, direction: str, tabletop: Tabletop) -> list[tuple[float, float]]:
+    area, side = strip(fallen_cubes(tabletop, slot)), tabletop.widest
     half = (area.length - side) / 2
     x, y = slot.point(side + half, 0.0, direction)
     return _corners(x, y, slot.heading(direction), half, area.half_width)
 
 
-def _strip(axis: Any, slot: Slot, direction: str, side: float, preferred: bool) -> None:
+def _blocks(tabletop: Tabletop) -> str:
+    """The sizes of its blocks."""
+    if tabletop.uniform:
+        return f"blocks of {100 * tabletop.side:.1f} cm"
+    sizes = [tabletop.block, *tabletop.sizes.values()]
+    spans = ([size.footprint for size in sizes], [size.height for size in sizes])
+    wide, high = (f"{100 * min(span):.1f} to {100 * max(span):.1f} cm" for span in spans)
+    return f"boxes {wide} wide, {high} high"
+
+
+def _strip(axis: Any, slot: Slot, direction: str, tabletop: Tabletop, preferred: bool) -> None:
     from matplotlib.patches import Polygon
 
-    corners = _outline(slot, direction, side)
+    corners = _outline(slot, direction, tabletop)
     axis.add_patch(Polygon(corners, facecolor=STRIP, alpha=0.35 if preferred else 0.12, edgecolor="none", zorder=1))
 
 

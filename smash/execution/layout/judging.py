@@ -31,7 +31,7 @@ def problems_of(tabletop: Tabletop) -> Iterator[str]:
         pile = tuple(name for name in poses if name.startswith(f"stacks[{index}] "))
         for height in sorted({1, len(pile) - (slot.falling or len(pile)) + 1}):
             try:
-                topple(arm, arm.robot.ready, slot, pile, height, poses)
+                topple(arm, arm.robot.ready, slot, pile, height, Geometry({}, blocks=poses))
             except ExecutionFailure as failure:
                 yield f"stacks[{index}]: no push at height {height} among full piles: {failure}"
 

@@ -91,7 +91,7 @@ def lay_out(
         places = places_of_plan(law, actions, tabletop.highest)
     if instance.table and not any(place.falling for place in places):
         places[0] = replace(places[0], falling=1)
-    reason = impossible(places, tabletop.side, robot)
+    reason = impossible(places, tabletop.longest, robot)
     if reason is not None:
         if actions is None and height is None:
             reason += "; without a plan any pile may have all blocks: give the PLAN, or --height"
@@ -103,11 +103,11 @@ def lay_out(
 
     def judge(slots: Sequence[Slot]) -> str | None:
         made = scene(slots)
-        return next(problems_of(made), None) or (
+        return next(problems_of(replace(made, side=made.longest, height=None, sizes={})), None) or (
             None if actions is None else next(problems_of_plan(made, law, actions), None)
         )
 
-    found = find_layout(places, tabletop.side, robot, judge, attempts=attempts, seed=seed)
+    found = find_layout(places, tabletop.longest, robot, judge, attempts=attempts, seed=seed)
     if found.slots is None:
         raise NotFound(f"no layout for {instance.name!r} was found in {attempts} attempts; the nearest: {found.reason}")
     return Layout(scene(found.slots), tuple(places), found.attempts)

@@ -91,7 +91,7 @@ def specification(
     for name, pose in blocks.items():
         body = _free_body(spec, block_body(name), pose)
         box = body.add_geom(
-            name=block_body(name), type=mujoco.mjtGeom.mjGEOM_BOX, size=[made[name].side / 2] * 3, mass=made[name].mass
+            name=block_body(name), type=mujoco.mjtGeom.mjGEOM_BOX, size=made[name].half, mass=made[name].mass
         )
         _surface(box, tabletop.friction.block**2, 0, BLOCKS, BLOCKS | ROBOT | GROUND | TRAYS)
     if any(block.friction != tabletop.friction.block for block in made.values()):

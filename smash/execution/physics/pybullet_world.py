@@ -8,7 +8,7 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -59,7 +59,7 @@ class PyBulletWorld(World):
             self._after_close = None
 
     def _set_up(self, blocks: Mapping[str, BlockPose], gui: bool) -> None:
-        c, friction, side = self.client, self.tabletop.friction, self.tabletop.side
+        c, friction = self.client, self.tabletop.friction
         c.setPhysicsEngineParameter(fixedTimeStep=STEP, numSolverIterations=ITERATIONS, deterministicOverlappingPairs=1)
         c.setGravity(0, 0, -9.81)
         shape = c.createCollisionShape(c.GEOM_BOX, halfExtents=[1.5, 1.5, 0.05])
@@ -83,13 +83,13 @@ class PyBulletWorld(World):
         # The base is bolted to the table; its contacts would cost more than all blocks'.
         for link in range(BASE, self._arm[0] + 1):
             c.setCollisionFilterPair(self._body, self._table, link, -1, 0)
-        box = c.createCollisionShape(c.GEOM_BOX, halfExtents=[side / 2] * 3)
+        boxes = _Boxes(c)
+        boxes.of(self.tabletop.block.half.tolist())
         self.bodies: dict[str, int] = {}
         for name, pose in blocks.items():
-            made, shape = self._as_made(name), box
-            if made.side != side:
-                shape = c.createCollisionShape(c.GEOM_BOX, halfExtents=[made.side / 2] * 3)
-            body = c.createMultiBody(made.mass, shape, -1, pose.position.tolist(), quaternion_of(pose.rotation))
+            made = self._as_made(name)
+            place, turn = pose.position.tolist(), quaternion_of(pose.rotation)
+            body = c.createMultiBody(made.mass, boxes.of(made.half), -1, place, turn)
             c.changeDynamics(
                 body,
                 -1,
@@ -203,6 +203,21 @@ def numbers_of(client: Any, body: int, robot: Robot) -> tuple[tuple[int, ...], t
 
 def _told(name: bytes) -> str:
     return name.decode()
+
+
+class _Boxes:
+    """Collision shapes of blocks: one for all that are of a size."""
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+        self._made: dict[tuple[float, ...], int] = {}
+
+    def of(self, half: Sequence[float]) -> int:
+        """The shape with these half edges [m]."""
+        shape = self._made.get(tuple(half))
+        if shape is None:
+            shape = self._made[tuple(half)] = self._client.createCollisionShape(self._client.GEOM_BOX, halfExtents=half)
+        return shape
 
 
 def connect(gui: bool) -> Any:

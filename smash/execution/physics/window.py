@@ -41,7 +41,7 @@ def furnish(client: Any, tabletop: Tabletop) -> None:
     """Look at the table from near by, and mark the slots on it."""
     client.configureDebugVisualizer(client.COV_ENABLE_GUI, 0)
     client.resetDebugVisualizerCamera(1.5, 30, -38, [0.0, 0.0, 0.15])
-    half = [0.6 * tabletop.side] * 2 + [PAD_HEIGHT]
+    half = [0.6 * tabletop.widest] * 2 + [PAD_HEIGHT]
     for slots, colour in ((tabletop.stacks, [0.55, 0.66, 0.80, 1]), (tabletop.buffers, [0.74, 0.74, 0.72, 1])):
         shape = client.createVisualShape(client.GEOM_BOX, halfExtents=half, rgbaColor=colour)
         for slot in slots:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from smash.execution.scene.block_pose import BlockPose
-from smash.execution.scene.noise import Made
+from smash.execution.scene.noise import Made, as_told
 from smash.execution.scene.tabletop import Tabletop
 from smash.motion.obstacles import BodyName
 from smash.motion.robots import load_robot
@@ -104,8 +104,7 @@ class World(ABC):
 
     def _as_made(self, block: str) -> Made:
         """One block as it is."""
-        made = self._made.get(block)
-        return made or Made(self.tabletop.side, self.tabletop.mass, self.tabletop.friction.block)
+        return self._made.get(block) or as_told(self.tabletop, block)
 
     @abstractmethod
     def _open(self, blocks: Mapping[str, BlockPose], carriers: Mapping[str, BlockPose], gui: bool) -> None:

@@ -1,4 +1,7 @@
-"""Where a block is. A cube has 24 equal orientations: what counts is how far it leans and how its sides are turned."""
+"""Where a block is: what counts is which of its axes is upright, how far it leans and how its sides are turned.
+
+A cube has 24 equal orientations, a box with a square footprint has eight.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ QUARTER = pi / 2
 
 @dataclass(frozen=True, eq=False)
 class BlockPose:
-    """Pose of one cube in the world.
+    """Pose of one block in the world.
 
     Attributes:
         position: Centre [m], shape (3,).
@@ -24,6 +27,11 @@ class BlockPose:
     rotation: NDArray[np.float64]
 
     @property
+    def upright_axis(self) -> int:
+        """Which axis is nearest to the vertical."""
+        return int(np.abs(self.rotation[2]).argmax())
+
+    @property
     def tilt(self) -> float:
         """How far the axis nearest to the vertical leans [rad], 0 to 0.96."""
         return acos(min(1.0, float(np.abs(self.rotation[2]).max())))
@@ -31,8 +39,7 @@ class BlockPose:
     @property
     def yaw(self) -> float:
         """How the sides are turned about the vertical [rad], in [-pi/4, pi/4)."""
-        upright = int(np.abs(self.rotation[2]).argmax())
-        side = self.rotation[:, (upright + 1) % 3]
+        side = self.rotation[:, (self.upright_axis + 1) % 3]
         return quarter_turn(atan2(float(side[1]), float(side[0])))
 
     def distance(self, x: float, y: float) -> float:

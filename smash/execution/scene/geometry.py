@@ -20,6 +20,8 @@ class Geometry:
         blocks: Poses of the blocks, as far as they are known.
         carriers: Poses of the carriers.
         areas: Where the other blocks may be: those that were toppled before anybody saw where they landed.
+        unsure: Blocks that will have been put down by then on a face that nobody knows yet, or turned either way:
+            known is where, and how high at most.
     """
 
     slots: Mapping[str, Slot]
@@ -27,6 +29,7 @@ class Geometry:
     blocks: dict[str, BlockPose] = field(default_factory=dict)
     carriers: dict[str, BlockPose] = field(default_factory=dict)
     areas: tuple[Area, ...] = ()
+    unsure: set[str] = field(default_factory=set)
 
     def seen(self, blocks: Mapping[str, BlockPose], carriers: Mapping[str, BlockPose]) -> Geometry:
         """The same table with these poses."""

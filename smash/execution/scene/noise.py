@@ -105,14 +105,27 @@ class Made:
     """One block as it is, which the executor is not told.
 
     Attributes:
-        side: [m].
+        footprint: [m].
+        height: [m].
         mass: [kg].
         friction: Its coefficient.
     """
 
-    side: float
+    footprint: float
+    height: float
     mass: float
     friction: float
+
+    @property
+    def half(self) -> list[float]:
+        """Half of its edges [m], the height last."""
+        return [self.footprint / 2, self.footprint / 2, self.height / 2]
+
+
+def as_told(tabletop: Tabletop, block: str) -> Made:
+    """One block as the scene says."""
+    size = tabletop.size(block)
+    return Made(size.footprint, size.height, size.mass, tabletop.friction.block)
 
 
 class Chance:
@@ -137,10 +150,12 @@ class Chance:
 
     def _make(self) -> dict[str, Made]:
         table, noise, count = self._tabletop, self.noise, len(self._instance.blocks)
-        sides = table.side + self._generators["size"].uniform(-noise.size, noise.size, count)
-        masses = table.mass * (1.0 + noise.mass * self._normal("mass", count))
+        sizes = [table.size(block) for block in self._instance.blocks]
+        larger = self._generators["size"].uniform(-noise.size, noise.size, count)
+        footprints, heights = (np.array([size.edges[axis] for size in sizes]) + larger for axis in (0, 2))
+        masses = np.array([size.mass for size in sizes]) * (1.0 + noise.mass * self._normal("mass", count))
         frictions = table.friction.block * (1.0 + noise.friction * self._normal("friction", count))
-        rows = np.stack([sides, masses, np.maximum(frictions, 0.01)], axis=1).tolist()
+        rows = np.stack([footprints, heights, masses, np.maximum(frictions, 0.01)], axis=1).tolist()
         return {block: Made(*row) for block, row in zip(self._instance.blocks, rows, strict=True)}
 
     def scene(self) -> Tabletop:
@@ -161,8 +176,8 @@ class Chance:
                 pose = found[block]
                 middle = pose.position + np.append(self.astray(), 0.0)
                 if self.made:
-                    middle[2] = below + self.made[block].side / 2
-                    below += self.made[block].side
+                    middle[2] = below + self.made[block].height / 2
+                    below += self.made[block].height
                 found[block] = BlockPose(middle, pose.rotation)
         return found
 

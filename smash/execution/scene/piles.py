@@ -12,16 +12,31 @@ from smash.problem.rules import Law
 
 
 def highest_piles(law: Law, actions: Sequence[Action]) -> dict[str, int]:
-    """Return how many blocks stand at each location at most while a legal plan is carried out, where any do.
-
-    Stations that a carrier stands at count as one.
-    """
+    """Return how many blocks stand at each location at most while a legal plan is carried out, where any do."""
     highest: dict[str, int] = {}
     for state in law.states(actions):
-        piles = {location: len(pile) for location, pile in state.piles.items() if pile}
-        for place, levels in (*piles.items(), *((station, 1) for station in state.stations.values())):
-            highest[place] = max(highest.get(place, 0), levels)
+        for location, pile in state.piles.items():
+            if pile:
+                highest[location] = max(highest.get(location, 0), len(pile))
     return highest
+
+
+def tallest_piles(tabletop: Tabletop, law: Law, actions: Sequence[Action]) -> dict[str, tuple[str, ...]]:
+    """Return the pile of each location that may be the tallest while a legal plan is carried out, where there is any.
+
+    Of blocks of unlike sizes the tallest one need not be the one with the most blocks.
+    """
+    tallest: dict[str, tuple[str, ...]] = {}
+    for state in law.states(actions):
+        for location, pile in state.piles.items():
+            if pile and tabletop.tall(pile) > tabletop.tall(tallest.get(location, ())):
+                tallest[location] = tuple(pile)
+    return tallest
+
+
+def stations_used(law: Law, actions: Sequence[Action]) -> set[str]:
+    """Return the stations that a carrier stands at while a legal plan is carried out."""
+    return {station for state in law.states(actions) for station in state.stations.values()}
 
 
 def largest_topples(law: Law, actions: Sequence[Action]) -> dict[str, int]:
@@ -49,11 +64,12 @@ def piles_of_ends(instance: Instance) -> dict[str, int]:
 def misfits(tabletop: Tabletop, law: Law, actions: Sequence[Action]) -> Iterator[str]:
     """Yield, in words, what of a legal plan a scene that has a slot for every location has no room for."""
     slots = tabletop.bind(law.instance)
-    for location, height in highest_piles(law, actions).items():
-        room = tabletop.room(slots[location]) if location in slots else height
-        if height > room:
-            piled = f"the plan piles {height} blocks on {location!r}"
-            yield f"{piled}; scene {tabletop.name!r} has room for {room} there{WAY_OUT}"
+    most, tallest = highest_piles(law, actions), tallest_piles(tabletop, law, actions)
+    for location, slot in slots.items():
+        high = most.get(location, 0)
+        if (slot.highest is not None and high > slot.highest) or not tabletop.has_room(slot, tallest.get(location, ())):
+            piled = f"the plan piles {high} blocks on {location!r}"
+            yield f"{piled}; scene {tabletop.name!r} has room for {tabletop.room(slot)} there{WAY_OUT}"
     for location in largest_topples(law, actions):
         if not slots[location].directions:
             yield f"the plan topples at {location!r}; scene {tabletop.name!r} has no landing strip there{WAY_OUT}"

@@ -1,4 +1,4 @@
-"""Scene files, `smash-scene/1`: block size, friction, speed and layout, in TOML or JSON, checked strictly.
+"""Scene files, `smash-scene/1`: sizes of blocks, friction, speed and layout, in TOML or JSON, checked strictly.
 
 A file that says `base = "default"` has from the default scene what it does not hold itself.
 """
@@ -6,6 +6,7 @@ A file that says `base = "default"` has from the default scene what it does not 
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from math import hypot, radians
@@ -14,6 +15,7 @@ from typing import Annotated, Any, Literal, cast
 
 import msgspec
 
+from smash.execution.scene.block_size import FOOTPRINTS, HEIGHTS, BlockSize
 from smash.execution.scene.noise import checked_noise, parse_noise
 from smash.execution.scene.tabletop import DIRECTIONS, SLOWEST, Friction, Noise, Slot, Tabletop
 from smash.execution.scene.tray import Tray
@@ -25,6 +27,9 @@ DEFAULT_SCENE = Path(__file__).parent / "default.toml"
 LEAST_APART = 1.5
 """Middles of two slots are so many sides apart, or the file is refused."""
 
+HEAVIEST = 1.0
+"""The most that a block weighs [kg]."""
+
 _Share = Annotated[float, msgspec.Meta(ge=SLOWEST, le=1.0)]
 _Count = Annotated[int, msgspec.Meta(ge=1)]
 _Coefficient = Annotated[float, msgspec.Meta(gt=0.0, le=2.0)]
@@ -33,6 +38,14 @@ _Coefficient = Annotated[float, msgspec.Meta(gt=0.0, le=2.0)]
 class _BlockFile(msgspec.Struct, forbid_unknown_fields=True):
     side: Annotated[float, msgspec.Meta(ge=0.03, le=0.06)] = 0.045
     mass: Annotated[float, msgspec.Meta(gt=0.0, le=1.0)] = 0.1
+    footprint: float | None = None
+    height: float | None = None
+
+
+class _SizeFile(msgspec.Struct, forbid_unknown_fields=True):
+    footprint: float | None = None
+    height: float | None = None
+    mass: float | None = None
 
 
 class _FrictionFile(msgspec.Struct, forbid_unknown_fields=True):
@@ -88,6 +101,7 @@ class _SceneFile(msgspec.Struct, forbid_unknown_fields=True):
     engine: Literal["pybullet", "mujoco"] | None = None
     robot: str | None = None
     block: _BlockFile = msgspec.field(default_factory=_BlockFile)
+    blocks: dict[str, _SizeFile] = {}
     friction: _FrictionFile = msgspec.field(default_factory=_FrictionFile)
     speed: _SpeedFile = msgspec.field(default_factory=_SpeedFile)
     buffers: list[_BufferFile] = []
@@ -130,10 +144,11 @@ def scene_from_document(document: Any, where: str = "scene") -> Tabletop:
         if len(set(stack.topple)) < len(stack.topple):
             known = ", ".join(DIRECTIONS)
             raise MalformedFile(where, f"`stacks[{number}].topple`: any of {known}, each once")
+    usual = _usual(file.block, where)
     table = Tabletop(
         name=file.name,
-        side=file.block.side,
-        mass=file.block.mass,
+        side=usual.footprint,
+        mass=usual.mass,
         friction=Friction(file.friction.block, file.friction.table, file.friction.finger),
         velocity=file.speed.velocity,
         acceleration=file.speed.acceleration,
@@ -141,14 +156,62 @@ def scene_from_document(document: Any, where: str = "scene") -> Tabletop:
         buffers=tuple(Slot(b.radius, radians(b.angle), highest=b.highest) for b in file.buffers),
         noise=_noise(file.noise, where),
         engine=file.engine,
+        height=None if usual.is_cube else usual.height,
+        sizes=_sizes(file.blocks, usual, where),
     )
     if file.stations:
-        tray, stations = Tray(file.block.side, **msgspec.to_builtins(file.tray)), file.stations
+        tray, stations = Tray(table.longest, **msgspec.to_builtins(file.tray)), file.stations
         table = replace(table, tray=tray, stations=tuple(Slot(s.radius, radians(s.angle)) for s in stations))
     if file.robot is not None:
         table = table.with_robot(beside(file.robot, where))
     _refuse_overlap(table, where)
     return table
+
+
+def _usual(file: _BlockFile, where: str) -> BlockSize:
+    """The size of a block that has none of its own: a cube, where the file says no more than its side.
+
+    Raises:
+        MalformedFile: where the hand cannot hold it.
+    """
+    if file.footprint is None and file.height is None:
+        return BlockSize(file.side, file.side, file.mass)
+    footprint, height = (file.side if edge is None else edge for edge in (file.footprint, file.height))
+    _require_graspable("block", footprint, height, where)
+    return BlockSize(footprint, height, file.mass)
+
+
+def _sizes(files: Mapping[str, _SizeFile], usual: BlockSize, where: str) -> dict[str, BlockSize]:
+    """The blocks that have a size of their own: what one does not say is as usual, its density too.
+
+    Raises:
+        MalformedFile: where the hand cannot hold one of them.
+    """
+    sizes = {}
+    for name, file in files.items():
+        footprint = usual.footprint if file.footprint is None else file.footprint
+        height = usual.height if file.height is None else file.height
+        _require_graspable(f"blocks.{name}", footprint, height, where)
+        share = footprint**2 * height / (usual.footprint**2 * usual.height)
+        mass = usual.mass * share if file.mass is None else file.mass
+        if not 0.0 < mass <= HEAVIEST:
+            raise MalformedFile(where, f"`blocks.{name}.mass`: {mass:g} is not allowed; above 0, {HEAVIEST:g} at most")
+        sizes[name] = BlockSize(footprint, height, mass)
+    return sizes
+
+
+def _require_graspable(block: str, footprint: float, height: float, where: str) -> None:
+    """Refuse a block that the hand cannot hold.
+
+    Raises:
+        MalformedFile: with the block, and what fits.
+    """
+    for what, edge, (least, most), why in (
+        ("footprint", footprint, FOOTPRINTS, "as the open fingers have room for"),
+        ("height", height, HEIGHTS, "as a block is held by its middle, the fingertips below it and the palm above"),
+    ):
+        if not least <= edge <= most:
+            raise MalformedFile(where, f"`{block}.{what}`: {edge:g} m is not allowed; {least:g} to {most:g}, {why}")
 
 
 def _noise(file: _NoiseFile, where: str) -> Noise:
@@ -224,7 +287,7 @@ def _refuse_overlap(table: Tabletop, where: str) -> None:
     for first, (other, there) in enumerate(named):
         for name, slot in named[first + 1 :]:
             trays = name.startswith("stations") + other.startswith("stations")
-            least = trays * reach + LEAST_APART / 2 * table.side * (2 - trays)
+            least = trays * reach + LEAST_APART / 2 * table.widest * (2 - trays)
             apart = slot.distance(there.x, there.y)
             if apart < least:
                 problem = f"stands {apart:.3f} m from {other}; {least:.3f} or more is allowed"

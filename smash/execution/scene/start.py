@@ -8,6 +8,7 @@ from math import hypot
 import numpy as np
 
 from smash.execution.scene.block_pose import BlockPose, standing
+from smash.execution.scene.block_size import levels
 from smash.execution.scene.tabletop import DoesNotFit, Slot, Tabletop
 from smash.problem.model import Instance
 
@@ -22,7 +23,7 @@ REGION_LENGTH = (0.09, 0.30)
 REGION_HALF_WIDTH = 0.05
 """... so far aside of it, ..."""
 REGION_APART = 2.0
-"""... and so many sides apart."""
+"""... and so many sides of the widest block apart."""
 
 
 def starting_carriers(instance: Instance, stations: Mapping[str, Slot], tabletop: Tabletop) -> dict[str, BlockPose]:
@@ -42,28 +43,35 @@ def starting_poses(
     Raises:
         DoesNotFit: where the table region is too small for the blocks that start in it.
     """
-    side = tabletop.side
     poses: dict[str, BlockPose] = {}
     for location, slot in slots.items():
-        for level, block in enumerate(instance.start.get(location, ())):
+        heights: list[float] = []
+        for block in instance.start.get(location, ()):
+            height = tabletop.size(block).height
             dx, dy, turn = np.clip(generator.normal(size=3), -LARGEST, LARGEST) * (JITTER, JITTER, TURN)
-            poses[block] = standing(slot.x + dx, slot.y + dy, (level + 0.5) * side, slot.angle + turn)
+            middle = (levels(heights, height) + 0.5) * height
+            poses[block] = standing(slot.x + dx, slot.y + dy, middle, slot.angle + turn)
+            heights.append(height)
     for carrier in instance.carriers:
         assert tabletop.tray is not None
         for cell, block in enumerate(carrier.holds):
-            poses[block] = tabletop.tray.cell((carriers or {})[carrier.name], cell)
+            poses[block] = tabletop.tray.cell((carriers or {})[carrier.name], cell, tabletop.size(block).height)
     taken = [*poses.values(), *(carriers or {}).values()]
     for block in instance.table:
-        poses[block] = _in_region(tabletop, slots, taken, generator)
+        poses[block] = _in_region(tabletop, block, slots, taken, generator)
         taken.append(poses[block])
     return {block: poses[block] for block in instance.blocks}
 
 
 def _in_region(
-    tabletop: Tabletop, slots: Mapping[str, Slot], poses: Iterable[BlockPose], generator: np.random.Generator
+    tabletop: Tabletop,
+    block: str,
+    slots: Mapping[str, Slot],
+    poses: Iterable[BlockPose],
+    generator: np.random.Generator,
 ) -> BlockPose:
-    """A free place in the landing strips of the scene's stacks."""
-    side = tabletop.side
+    """A free place for a block in the landing strips of the scene's stacks, where it stands upright."""
+    apart, middle = REGION_APART * tabletop.widest, tabletop.size(block).height / 2
     taken = [(float(pose.position[0]), float(pose.position[1])) for pose in poses]
     taken += [(slot.x, slot.y) for slot in slots.values()]
     strips = [slot for slot in tabletop.stacks if slot.directions]
@@ -72,6 +80,6 @@ def _in_region(
         along = float(generator.uniform(*REGION_LENGTH))
         aside = float(generator.uniform(-REGION_HALF_WIDTH, REGION_HALF_WIDTH))
         x, y = slot.point(along, aside, slot.directions[0])
-        if all(hypot(x - other_x, y - other_y) > REGION_APART * side for other_x, other_y in taken):
-            return standing(x, y, side / 2, float(generator.uniform(-np.pi, np.pi)))
+        if all(hypot(x - other_x, y - other_y) > apart for other_x, other_y in taken):
+            return standing(x, y, middle, float(generator.uniform(-np.pi, np.pi)))
     raise DoesNotFit(f"the table region of scene {tabletop.name!r} has no room for so many blocks")

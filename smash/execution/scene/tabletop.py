@@ -6,12 +6,13 @@ frame (the stack's frame of the paper's pre-smash pose) has x radially outward a
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from hashlib import sha256
-from math import cos, hypot, pi, sin
+from math import cos, fsum, hypot, pi, sin
 
 from smash.execution.scene.block_pose import QUARTER, BlockPose
+from smash.execution.scene.block_size import BlockSize
 from smash.execution.scene.tray import Tray
 from smash.motion.robots import DEFAULT_ROBOT, load_robot
 from smash.problem.errors import SmashError
@@ -29,6 +30,9 @@ SLOWEST = 0.01
 """The least share of the arm's limits that motions may use: an episode would take an hour of simulated time."""
 
 WAY_OUT = "; `smash layout INSTANCE PLAN --out SCENE.toml` looks for a scene that fits"
+
+CUBE = 0.045
+"""Side of the cubes that pushes were measured with [m]."""
 
 
 class DoesNotFit(SmashError):
@@ -107,7 +111,7 @@ class Noise:
             and y [m].
         friction: Of the coefficients of each block, the table and the fingers: standard deviation, share of them.
         mass: Of each block's mass: standard deviation, share of it.
-        size: Tolerance of each block's side: so much larger or smaller at most, evenly spread [m].
+        size: Tolerance of each block's edges: so much larger or smaller at most, all alike, evenly spread [m].
     """
 
     pose: float = 0.0
@@ -130,7 +134,7 @@ class Tabletop:
 
     Attributes:
         name: What the scene is called in records.
-        side: Side of a block [m].
+        side: Side of a block, which is a cube, or its footprint where it is none [m].
         mass: Mass of a block [kg].
         friction: Friction coefficients.
         velocity: Share of the arm's velocity limits that motions use.
@@ -142,6 +146,8 @@ class Tabletop:
         noise: What an episode does not know exactly.
         engine: What simulates it where nothing else is named; no part of the fingerprint.
         robot: Name or file of the robot that stands at it, None for the default one.
+        height: Height of a block that is no cube [m].
+        sizes: The blocks that are of another size, by name.
     """
 
     name: str
@@ -157,6 +163,45 @@ class Tabletop:
     noise: Noise = field(default=Noise(), repr=False)
     engine: str | None = field(default=None, repr=False)
     robot: str | None = field(default=None, repr=False)
+    height: float | None = field(default=None, repr=False)
+    sizes: Mapping[str, BlockSize] = field(default_factory=dict, repr=False, hash=False)
+
+    @property
+    def block(self) -> BlockSize:
+        """The size of every block that has none of its own."""
+        return BlockSize(self.side, self.side if self.height is None else self.height, self.mass)
+
+    def size(self, block: str) -> BlockSize:
+        """The size of a block."""
+        return self.sizes.get(block) or self.block
+
+    @property
+    def uniform(self) -> bool:
+        """Whether all blocks are cubes of one size."""
+        return self.height is None and not self.sizes
+
+    @property
+    def widest(self) -> float:
+        """The greatest footprint of a block [m]."""
+        return max(size.footprint for size in (self.block, *self.sizes.values()))
+
+    @property
+    def longest(self) -> float:
+        """The longest edge of a block [m]."""
+        return max(size.longest for size in (self.block, *self.sizes.values()))
+
+    @property
+    def cube(self) -> float:
+        """Side of the cubes that a pile is counted in where a push asks how high it is [m]."""
+        return self.side if self.uniform else CUBE
+
+    def greatest_heap(self, count: int) -> list[BlockSize]:
+        """Return the sizes of the highest pile of so many blocks, the highest block first.
+
+        Of a size that stands in the scene by name there is one block, of the other size as many as are wanted.
+        """
+        known = [*self.sizes.values(), *[self.block] * count]
+        return sorted(known, key=lambda size: -size.height)[:count]
 
     @property
     def slots(self) -> tuple[Slot, ...]:
@@ -169,7 +214,8 @@ class Tabletop:
         noise = "" if self.noise == Noise() else repr(self.noise)
         robot = load_robot(self.robot).label
         other = "" if robot == DEFAULT_ROBOT else robot
-        return sha256(f"{self!r}{noise}{other}".encode()).hexdigest()[:8]
+        sizes = "" if self.uniform else repr((self.height, sorted(self.sizes.items())))
+        return sha256(f"{self!r}{noise}{other}{sizes}".encode()).hexdigest()[:8]
 
     def with_robot(self, robot: str) -> Tabletop:
         """The same table with another robot, which has a name or a file.
@@ -183,13 +229,28 @@ class Tabletop:
 
     @property
     def highest(self) -> int:
-        """The most blocks of a pile that the arm can work on from above."""
-        return int(load_robot(self.robot).tallest / self.side + 1e-9)
+        """The most blocks of a pile that the arm can work on from above, whichever they are."""
+        return int(load_robot(self.robot).tallest / self.longest + 1e-9)
+
+    def tall(self, blocks: Sequence[str]) -> float:
+        """How high a pile of these blocks is at most, on whichever of their faces they lie [m]."""
+        if self.uniform:
+            return len(blocks) * self.side
+        return fsum(self.size(block).longest for block in blocks)
 
     def room(self, slot: Slot) -> int:
-        """The most blocks of a pile at a slot: as many as the arm reaches there, and as the layout was made for."""
-        reached = int(load_robot(self.robot).highest(slot.radius) / self.side + 1e-9)
+        """The most blocks of a pile at a slot, whichever: as the arm reaches there, and as the layout was made for."""
+        reached = int(load_robot(self.robot).highest(slot.radius) / self.longest + 1e-9)
         return reached if slot.highest is None else min(reached, slot.highest)
+
+    def has_room(self, slot: Slot, pile: Sequence[str]) -> bool:
+        """Whether the arm reaches this pile at a slot, and the layout was made for so many blocks there."""
+        made_for = slot.highest is None or len(pile) <= slot.highest
+        return made_for and self.tall(pile) <= load_robot(self.robot).highest(slot.radius) + 1e-9
+
+    def strangers(self, instance: Instance) -> list[str]:
+        """The blocks that the scene gives a size and the instance has not."""
+        return [block for block in self.sizes if block not in instance.blocks]
 
     def bind(self, instance: Instance) -> dict[str, Slot]:
         """Give every location of `instance` its slot, in order.
@@ -217,11 +278,11 @@ class Tabletop:
             **dict(zip(instance.buffers, self.buffers, strict=False)),
         }
         for location, slot in slots.items():
-            height, room = len(instance.start.get(location, ())), self.room(slot)
-            if height > room:
+            pile = instance.start.get(location, ())
+            if not self.has_room(slot, pile):
                 raise DoesNotFit(
-                    f"instance {instance.name!r} starts with {height} blocks on {location!r}; "
-                    f"scene {self.name!r} has room for {room} there"
+                    f"instance {instance.name!r} starts with {len(pile)} blocks on {location!r}; "
+                    f"scene {self.name!r} has room for {self.room(slot)} there"
                 )
         return slots
 

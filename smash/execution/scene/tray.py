@@ -35,10 +35,10 @@ OVER_BLOCKS = 0.008
 
 @dataclass(frozen=True)
 class Tray:
-    """A tray for blocks of one size.
+    """A tray with cells for blocks up to one size.
 
     Attributes:
-        side: Of a block [m].
+        side: Longest edge of a block [m].
         rows: Of cells, two in each.
         board: The board's thickness [m].
         rim: The rim's height above the board [m].
@@ -123,22 +123,36 @@ class Tray:
         height = self.board / 2 + self.post_height - GRIP_DEPTH
         return np.asarray(pose.position + height * pose.rotation[:, 2])
 
-    def cell(self, pose: BlockPose, index: int) -> BlockPose:
-        """Where a block stands in a cell of the tray at `pose`."""
-        return BlockPose(pose.position + pose.rotation @ self.cells[index], pose.rotation)
+    def _middles(self, height: float | None) -> NDArray[np.float64]:
+        """Where the centres of blocks of this height are in the cells [m], shape (capacity, 3)."""
+        if height is None:
+            return self.cells
+        return np.asarray(self.cells + np.array([0.0, 0.0, (height - self.side) / 2]))
 
-    def cell_of(self, pose: BlockPose, block: BlockPose) -> int | None:
-        """The cell that a block stands in, upright on the board; None: it does not stand on this tray."""
+    def cell(self, pose: BlockPose, index: int, height: float | None = None) -> BlockPose:
+        """Where a block stands in a cell of the tray at `pose`; as high as `side`, where its height is not said [m]."""
+        return BlockPose(pose.position + pose.rotation @ self._middles(height)[index], pose.rotation)
+
+    def cell_of(self, pose: BlockPose, block: BlockPose, height: float | None = None) -> int | None:
+        """The cell that a block stands in, upright on the board; None: it does not stand on this tray.
+
+        Args:
+            pose: Of the tray.
+            block: Of the block.
+            height: How high it stands [m]; as high as `side`, where it is not said.
+        """
         inside = pose.rotation.T @ (block.position - pose.position)
-        away = np.abs(self.cells - inside)
+        away = np.abs(self._middles(height) - inside)
         nearest = int(away.sum(axis=1).argmin())
         leans = float(np.arccos(np.clip(np.abs(pose.rotation[:, 2] @ block.rotation).max(), 0.0, 1.0)))
-        near = bool((away[nearest] < (self.side / 3, self.side / 3, self.side / 5)).all())
+        near = bool((away[nearest] < (self.side / 3, self.side / 3, (height or self.side) / 5)).all())
         return nearest if near and leans < UPRIGHT else None
 
-    def free_cells(self, pose: BlockPose, blocks: Mapping[str, BlockPose]) -> list[int]:
-        """The cells that no block stands in, in order."""
-        taken = {self.cell_of(pose, block) for block in blocks.values()}
+    def free_cells(
+        self, pose: BlockPose, blocks: Mapping[str, BlockPose], heights: Mapping[str, float] | None = None
+    ) -> list[int]:
+        """The cells that no block stands in, in order; `heights` [m] are those of blocks that are not `side` high."""
+        taken = {self.cell_of(pose, block, (heights or {}).get(name)) for name, block in blocks.items()}
         return [index for index in range(self.capacity) if index not in taken]
 
 

@@ -135,7 +135,7 @@ def _pick_and_place(
     begun = process_time()
     segments, grasp = grounder.pick_and_place.pick(arm.robot.ready, block, where.blocks[block], scene)
     lifted = _count("pick", begun, segments, scene, tally)
-    stand = grounder.stand(target, State.start_of(instance), where)
+    stand = grounder.stand(block, target, State.start_of(instance), where)
     begun = process_time()
     way = grounder.pick_and_place.landing(lifted, block, stand, scene, grasp)
     _count("place", begun, grounder.pick_and_place.place(lifted, block, way, scene), scene, tally)
@@ -149,9 +149,7 @@ def _topple(arm: ArmMotions, instance: Instance, where: Geometry, generator: np.
     pile = instance.start[location]
     height = int(generator.integers(1, len(pile) + 1))
     begun = process_time()
-    segments = topple(
-        arm, arm.robot.ready, where.slots[location], pile, height, where.blocks, None, frozenset(instance.table)
-    )
+    segments = topple(arm, arm.robot.ready, where.slots[location], pile, height, where, frozenset(instance.table))
     _count("topple", begun, segments, arm.scene(where.blocks), tally)
 
 
@@ -178,7 +176,7 @@ def compare_checkers(states: int, seed: int) -> Counter[tuple[bool, bool]]:
     generator = np.random.default_rng(seed)
     arm = ArmMotions(default_scene())
     robot = arm.robot
-    scene, hand = arm.scene(random_table(generator, 9)[1].blocks), CENTRED.hand(arm.side)
+    scene, hand = arm.scene(random_table(generator, 9)[1].blocks), CENTRED.of(arm.tabletop.block.edges).hand()
     fast, exact = CollisionChecker(robot, scene, hand, 0.0), HullChecker(robot, scene, hand, 0.0)
     verdicts: Counter[tuple[bool, bool]] = Counter()
     for joints in generator.uniform(robot.lower, robot.upper, (states, robot.count)):

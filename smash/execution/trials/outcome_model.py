@@ -47,8 +47,9 @@ def outcome_model(tabletop: Tabletop, trials: Iterable[Trial], *, rounds: int = 
         seed: Of these.
 
     Raises:
-        SmashError: where no trial can be used, or they are of several engines.
+        SmashError: where no trial can be used, they are of several engines, or the blocks of the scene differ.
     """
+    require_cubes(tabletop)
     trials = list(trials)
     engines = {trial.engine for trial in trials}
     if len(engines) > 1:
@@ -79,6 +80,17 @@ def outcome_model(tabletop: Tabletop, trials: Iterable[Trial], *, rounds: int = 
         moves=fit(move for move, _ in tried if move is not None),
         stuck=round(min(1.0, (stuck + 0.5) / (dangers + 1.0)), DIGITS),
     )
+
+
+def require_cubes(tabletop: Tabletop) -> None:
+    """Refuse a scene that no outcome model can be made of.
+
+    Raises:
+        SmashError: where its blocks are no cubes of one size.
+    """
+    if not tabletop.uniform:
+        words = f"an outcome model knows cubes of one size alone, and scene {tabletop.name!r} has boxes"
+        raise SmashError(f"{words}: the map is made without it")
 
 
 def tried_moves(

@@ -7,6 +7,8 @@ success if everything that should stand still stands, and every toppled block ca
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import count as counted
+from itertools import islice
 from pathlib import Path
 
 import msgspec
@@ -49,7 +51,7 @@ def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: i
         engine: What simulates it; the scene's, or the one that is there, where none is named.
     """
     engine = engine_of(tabletop, engine)
-    names = [f"b{level}" for level in range(1, height + falling)]
+    names = pile_of(tabletop, height + falling - 1, seed)
     location, slot = f"s{stack}", tabletop.stacks[stack]
     instance = make_instance(
         name="trial", blocks=names, stacks=[location], start={location: names}, goal=PositionsGoal({})
@@ -91,6 +93,16 @@ def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: i
         ),
         seconds=seconds,
     )
+
+
+def pile_of(tabletop: Tabletop, count: int, seed: int) -> list[str]:
+    """Names for a pile of so many blocks: where a scene has sizes by name, some of those blocks in a drawn order."""
+    named = list(tabletop.sizes)
+    if not named:
+        return [f"b{level}" for level in range(1, count + 1)]
+    drawn = np.random.default_rng([seed, count]).permutation(len(named))[:count]
+    others = (f"b{number}" for number in counted(1) if f"b{number}" not in tabletop.sizes)
+    return [named[number] for number in drawn] + list(islice(others, count - len(drawn)))
 
 
 def _landing(

@@ -108,7 +108,7 @@ def film_frames(times: Sequence[float], speed: float = FILM.speed) -> list[int]:
 
 def _images(recording: Recording, tabletop: Tabletop, episode: Episode, film: Film) -> Iterator[Image]:
     width, height = film.size
-    with stage_class()(tabletop, len(recording.blocks[0]), len(recording.trays[0]), coarse=True) as stage:
+    with stage_class()(tabletop, recording.names, len(recording.trays[0]), coarse=True) as stage:
         for frame in film_frames(recording.times, film.speed):
             stage.pose(recording, frame)
             moment = recording.times[frame]

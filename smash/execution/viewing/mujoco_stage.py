@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy as np
 
 from smash.execution.physics import mujoco_model as models
 from smash.execution.scene.block_pose import BlockPose
-from smash.execution.scene.noise import Made
+from smash.execution.scene.noise import as_told
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.viewing.recording import Recording
 from smash.execution.viewing.stage import (
@@ -63,8 +64,8 @@ class MujocoStage(Stage):
     _context: Any = None
     _painter: Any = None
 
-    def _open(self, tabletop: Tabletop, blocks: int, carriers: int) -> None:
-        self._names = [models.block_body(str(number)) for number in range(blocks)]
+    def _open(self, tabletop: Tabletop, blocks: Sequence[str], carriers: int) -> None:
+        self._names = [models.block_body(block) for block in blocks]
         self._names += [models.carrier_body(str(number)) for number in range(carriers)]
         self.model = model = self._model(tabletop, blocks, carriers)
         self.data: Any = mujoco.MjData(model)
@@ -85,22 +86,20 @@ class MujocoStage(Stage):
             if held is not None:
                 held.free()
 
-    def _model(self, tabletop: Tabletop, blocks: int, carriers: int) -> Any:
-        made = Made(tabletop.side, tabletop.mass, tabletop.friction.block)
-        numbers, trays = [str(number) for number in range(blocks)], [str(number) for number in range(carriers)]
-        spec = models.specification(
-            tabletop, dict.fromkeys(numbers, ELSEWHERE), dict.fromkeys(trays, ELSEWHERE), dict.fromkeys(numbers, made)
-        )
+    def _model(self, tabletop: Tabletop, blocks: Sequence[str], carriers: int) -> Any:
+        made = {block: as_told(tabletop, block) for block in blocks}
+        trays = [str(number) for number in range(carriers)]
+        spec = models.specification(tabletop, dict.fromkeys(blocks, ELSEWHERE), dict.fromkeys(trays, ELSEWHERE), made)
         # What does not collide is not in the simulated model, and neither are textures: here it is what is looked at.
         spec.compiler.discardvisual = False
-        colours = dict(zip(self._names, block_colours(blocks), strict=False))
+        colours = dict(zip(self._names, block_colours(len(blocks)), strict=False))
         for shape in spec.geoms:
             colour = colours.get(shape.name, TRAY_COLOUR if shape.name.startswith("carrier") else ROBOT_COLOUR)
             if shape.name == "table":
                 shape.size, shape.pos, colour = TABLE_HALF, [0.0, 0.0, -TABLE_HALF[2]], TABLE_COLOUR
             shape.rgba = [*colour, 1.0]
         for slot in tabletop.slots:
-            half, colour = slot_look(slot, tabletop.side)
+            half, colour = slot_look(slot, tabletop.widest)
             turn, place = [np.cos(slot.angle / 2), 0.0, 0.0, np.sin(slot.angle / 2)], [slot.x, slot.y, half[2]]
             spec.worldbody.add_geom(
                 type=mujoco.mjtGeom.mjGEOM_BOX,

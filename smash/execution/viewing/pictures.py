@@ -28,7 +28,7 @@ def write_stills(path: Path, recording: Recording, tabletop: Tabletop, moments: 
     figure = Figure(figsize=(4.8 * len(moments), 3.5), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(1, len(moments), squeeze=False)[0]
-    with stage_class()(tabletop, len(recording.blocks[0]), len(recording.trays[0])) as stage:
+    with stage_class()(tabletop, recording.names, len(recording.trays[0])) as stage:
         for axis, (caption, moment) in zip(axes, moments, strict=True):
             stage.pose(recording, recording.at(moment))
             axis.imshow(stage.photograph(SIZE))

@@ -39,7 +39,7 @@ class PyBulletStage(Stage):
     client: Any
     _backdrop: tuple[tuple[int, int], Camera, Image] | None = None
 
-    def _open(self, tabletop: Tabletop, blocks: int, carriers: int) -> None:
+    def _open(self, tabletop: Tabletop, blocks: Sequence[str], carriers: int) -> None:
         self.client = c = connect(gui=False)
         robot = load_robot(tabletop.robot)
         with urdf_file(robot.urdf) as urdf:
@@ -47,7 +47,8 @@ class PyBulletStage(Stage):
         self._joints = [number for numbers in numbers_of(c, self.robot, robot) for number in numbers]
         self._furniture = connect(gui=False) if self._coarse else c
         self._furnish(tabletop)
-        self.blocks = [_box(c, [tabletop.side / 2] * 3, [0, 0, 0], colour) for colour in block_colours(blocks)]
+        looks = zip(blocks, block_colours(len(blocks)), strict=True)
+        self.blocks = [_box(c, tabletop.size(block).half.tolist(), [0, 0, 0], colour) for block, colour in looks]
         self.trays = [self._tray(tabletop) for _ in range(carriers)]
 
     def close(self) -> None:
@@ -60,7 +61,7 @@ class PyBulletStage(Stage):
         c = self._furniture
         _box(c, TABLE_HALF, [0, 0, -TABLE_HALF[2]], TABLE_COLOUR)
         for slot in tabletop.slots:
-            half, colour = slot_look(slot, tabletop.side)
+            half, colour = slot_look(slot, tabletop.widest)
             _box(c, half, [slot.x, slot.y, half[2]], colour, c.getQuaternionFromEuler([0, 0, slot.angle]))
 
     def _tray(self, tabletop: Tabletop) -> int:

@@ -20,6 +20,7 @@ class Recording:
     """Frames of one episode; give `take` to the executor as `on_frame`.
 
     Attributes:
+        names: Of the blocks.
         times: [s], one per frame.
         joints: Arm and finger joints per frame, shape (n + 2,) [rad, m].
         links: Position and quaternion of links 1 to n, hand and fingers per frame, shape (n + 3, 7) [m].
@@ -28,6 +29,7 @@ class Recording:
         touched: The blocks that arm or hand touch, by their places in that order, per frame.
     """
 
+    names: list[str] = field(default_factory=list)
     times: list[float] = field(default_factory=list)
     joints: list[NDArray[np.float64]] = field(default_factory=list)
     links: list[NDArray[np.float64]] = field(default_factory=list)
@@ -43,6 +45,7 @@ class Recording:
         self.joints.append(np.concatenate([world.joints(), world.fingers()]))
         self.links.append(world.links())
         poses = world.poses()
+        self.names = list(poses)
         places = {block: place for place, block in enumerate(poses)}
         self.blocks.append(_rows(poses.values()))
         self.touched.append(sorted({places[block] for block in world.in_contact()}))

@@ -40,7 +40,8 @@ def write_replay(path: Path, recording: Recording, tabletop: Tabletop, episode: 
         instance: What was to be done: the names of blocks, in the recording's order, and of locations, and the goal.
     """
     scene: dict[str, Any] = {
-        "side": tabletop.side,
+        "side": tabletop.widest,
+        "sizes": [tabletop.size(block).edges for block in instance.blocks],
         "slots": [[slot.x, slot.y, slot.angle, bool(slot.directions)] for slot in tabletop.slots],
         "places": _places(tabletop, instance),
         "blocks": instance.blocks,
@@ -94,7 +95,7 @@ def goal_in_words(goal: Goal) -> str:
 def _places(tabletop: Tabletop, instance: Instance) -> list[tuple[str, float, float]]:
     """Name and place on the table [m] of what to call each location and station of the instance."""
     deep = 0.0 if tabletop.tray is None else tabletop.tray.size[1]
-    named = [(name, slot, tabletop.side) for name, slot in tabletop.bind(instance).items()]
+    named = [(name, slot, tabletop.widest) for name, slot in tabletop.bind(instance).items()]
     named += [(name, slot, deep) for name, slot in tabletop.bind_stations(instance).items()]
     return [(name, *slot.point(depth / 2 + BESIDE, 0.0, "outward")) for name, slot, depth in named]
 

@@ -191,9 +191,8 @@ def _frames(
 
 
 def _shapes(where: Geometry, tabletop: Tabletop) -> _Sent:
-    side = tabletop.side
     shapes = [
-        (block, (side, side, side), colour)
+        (block, tabletop.size(block).edges, colour)
         for block, colour in zip(where.blocks, block_colours(len(where.blocks)), strict=True)
     ]
     for carrier in where.carriers:

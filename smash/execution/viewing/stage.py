@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from types import TracebackType
 from typing import Self
@@ -63,15 +64,15 @@ class Stage(ABC):
 
     Args:
         tabletop: The scene.
-        blocks: How many there are.
-        carriers: Likewise.
+        blocks: Their names, in the order of a recording.
+        carriers: How many there are.
         coarse: Without shadows: for films.
 
     Raises:
         Unsupported: where nothing can be drawn here.
     """
 
-    def __init__(self, tabletop: Tabletop, blocks: int, carriers: int = 0, *, coarse: bool = False) -> None:
+    def __init__(self, tabletop: Tabletop, blocks: Sequence[str], carriers: int = 0, *, coarse: bool = False) -> None:
         self._coarse = coarse
         self._open(tabletop, blocks, carriers)
 
@@ -84,7 +85,7 @@ class Stage(ABC):
         self.close()
 
     @abstractmethod
-    def _open(self, tabletop: Tabletop, blocks: int, carriers: int) -> None:
+    def _open(self, tabletop: Tabletop, blocks: Sequence[str], carriers: int) -> None:
         """Set everything up."""
 
     @abstractmethod

@@ -1,0 +1,83 @@
+"""How large a block is: a box with a square footprint, which may lie on any of its faces after a topple."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import atan2
+
+import numpy as np
+from numpy.typing import NDArray
+
+from smash.execution.scene.block_pose import QUARTER, BlockPose
+
+FOOTPRINTS = (0.03, 0.07)
+"""The least and the most of a footprint [m]: the open fingers are 8 cm apart, 5 mm of it room beside each of them."""
+HEIGHTS = (0.025, 0.07)
+"""The least and the most of a height [m]: a block is held by its middle, the fingertips 7 mm below it, the palm 39 mm
+above."""
+
+Extents = tuple[float, float, float]
+"""Of a block that lies or is held level [m]: along one horizontal direction, across it, and upright."""
+
+
+@dataclass(frozen=True, slots=True)
+class BlockSize:
+    """A box; its frame has the height along z.
+
+    Attributes:
+        footprint: Length of the sides of the square that it stands on in a pile [m].
+        height: [m].
+        mass: [kg].
+    """
+
+    footprint: float
+    height: float
+    mass: float
+
+    @property
+    def edges(self) -> Extents:
+        """Along the axes of its frame [m]."""
+        return self.footprint, self.footprint, self.height
+
+    @property
+    def half(self) -> NDArray[np.float64]:
+        """Half of the edges [m], shape (3,)."""
+        return np.array(self.edges) / 2
+
+    @property
+    def longest(self) -> float:
+        """The longest edge [m]."""
+        return max(self.footprint, self.height)
+
+    @property
+    def is_cube(self) -> bool:
+        """Whether it does not matter which face it lies on."""
+        return self.footprint == self.height
+
+    def stands(self, pose: BlockPose) -> bool:
+        """Whether it stands on its footprint, and does not lie on one of its sides."""
+        return self.is_cube or pose.upright_axis == 2
+
+    def upright(self, pose: BlockPose) -> float:
+        """Its extent along the axis that is nearest to the vertical [m]."""
+        return self.edges[pose.upright_axis]
+
+    def extents(self, pose: BlockPose) -> Extents:
+        """Its extents along `pose.yaw`, across that, and upright [m]."""
+        axis = pose.upright_axis
+        first, second, edges = (axis + 1) % 3, (axis + 2) % 3, self.edges
+        heading = atan2(float(pose.rotation[1, first]), float(pose.rotation[0, first]))
+        if round((heading - pose.yaw) / QUARTER) % 2:
+            first, second = second, first
+        return edges[first], edges[second], edges[axis]
+
+
+def levels(heights: Iterable[float], unit: float) -> float:
+    """How high a pile is, in units of one of its blocks: of equal blocks the very number of them.
+
+    Args:
+        heights: Of the pile's blocks [m].
+        unit: Height of the block that is counted by [m].
+    """
+    return sum(height / unit for height in heights)
