@@ -30,7 +30,6 @@ from smash.execution.sight import Sight
 from smash.execution.trials.outcome_model import require_cubes
 from smash.execution.trials.topple_map import pile_of
 from smash.motion.move import Move
-from smash.motion.robot import READY
 from smash.problem import (
     Carrier,
     Lift,
@@ -46,7 +45,7 @@ from smash.problem import (
 from smash.problem.errors import SmashError
 from smash.problem.rules import Law
 from tests.execution.episodes import plan_of
-from tests.robots import PANDA
+from tests.robots import PANDA, READY
 
 ROOT = Path(__file__).parents[2]
 FLAT, TALL = BlockSize(0.05, 0.03, 0.1), BlockSize(0.04, 0.06, 0.1)
@@ -256,7 +255,7 @@ def test_piles_of_a_map_are_drawn_from_the_boxes_of_the_scene():
 
 def test_a_pile_is_limited_by_its_height_as_the_boxes_may_lie():
     scene = dataclasses.replace(default_scene(), sizes={name: BlockSize(0.05, 0.07, 0.1) for name in "abcdefgh"})
-    with pytest.raises(DoesNotFit, match="8 blocks, which a plan may pile up; scene 'default' has room for 7"):
+    with pytest.raises(DoesNotFit, match="starts with 8 blocks on 's1'; scene 'default' has room for 7 there"):
         scene.bind(boxes(s1="abcdefgh"))
     assert scene.bind(boxes(s1="abcdefg"))
 

@@ -5,13 +5,14 @@ import dataclasses
 import numpy as np
 import pytest
 
-from smash.execution.ability import highest_piles, require_able
+from smash.execution.ability import require_able
 from smash.execution.actions.arm_motions import ArmMotions, Move
 from smash.execution.actions.pick_and_place import PickAndPlace
 from smash.execution.executor import Executor
 from smash.execution.physics.engines import engine_of, world_of
 from smash.execution.policy import OPEN
 from smash.execution.scene.block_pose import standing
+from smash.execution.scene.piles import highest_piles
 from smash.execution.scene.scene_file import default_scene, read_scene, scene_of
 from smash.execution.scene.tabletop import DoesNotFit, Slot
 from smash.execution.viewing.recording import Recording

@@ -53,9 +53,9 @@ class Violation:
         return f"{self.condition}: {self.slot}: {self.problem}"
 
 
-def fallen_cubes(tabletop: Tabletop, slot: Slot) -> int:
-    """How many cubes the highest blocks of a scene count as when so many of them as a slot's strips are for fall."""
-    return falling_cubes([size.height / tabletop.cube for size in tabletop.greatest_heap(falling(slot))])
+def fallen_cubes(tabletop: Tabletop, count: int = FALLING) -> int:
+    """How many cubes so many blocks of a scene, the highest ones, count as when they are toppled."""
+    return falling_cubes([size.height / tabletop.cube for size in tabletop.greatest_heap(count)])
 
 
 def violations(tabletop: Tabletop, height: int | None = None, buffer_height: int | None = None) -> list[Violation]:
@@ -145,7 +145,7 @@ def _stations(tabletop: Tabletop) -> dict[str, Slot]:
 def _strip_problems(tabletop: Tabletop, named: dict[str, Slot], name: str, direction: str) -> list[Violation]:
     condition, slot, wide = "monotone transformation", named[name], tabletop.widest
     found = []
-    area, robot = strip(fallen_cubes(tabletop, slot)), load_robot(tabletop.robot)
+    area, robot = strip(fallen_cubes(tabletop, falling(slot))), load_robot(tabletop.robot)
     tray = 0.0 if tabletop.tray is None else min(tabletop.tray.size) / 2
     rooms = {key: (other, wide / 2) for key, other in named.items() if key != name}
     rooms |= {key: (station, tray) for key, station in _stations(tabletop).items()}
@@ -153,7 +153,7 @@ def _strip_problems(tabletop: Tabletop, named: dict[str, Slot], name: str, direc
         along, aside = slot.coordinates(other.x, other.y, direction)
         if 0 < along < area.length + half and abs(aside) < area.half_width + half:
             found.append(Violation(condition, name, f"{key} lies in the strip of a {direction} topple"))
-    reached = min(area.length, strip(FALLING).length)
+    reached = min(area.length, strip(fallen_cubes(tabletop)).length)
     for along in np.linspace(min(2 * wide, reached), reached, STRIP_SAMPLES):
         x, y = slot.point(float(along), 0.0, direction)
         low = tabletop.block.height / 2

@@ -106,7 +106,7 @@ def _strip_corners(tabletop: Tabletop) -> list[tuple[float, float]]:
 
 
 def _outline(slot: Slot, direction: str, tabletop: Tabletop) -> list[tuple[float, float]]:
-    area, side = strip(fallen_cubes(tabletop, slot)), tabletop.widest
+    area, side = strip(fallen_cubes(tabletop, falling(slot))), tabletop.widest
     half = (area.length - side) / 2
     x, y = slot.point(side + half, 0.0, direction)
     return _corners(x, y, slot.heading(direction), half, area.half_width)
