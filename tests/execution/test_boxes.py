@@ -12,7 +12,7 @@ from smash.execution.actions.arm_motions import ArmMotions
 from smash.execution.actions.grasps import CENTRED, GRASPS
 from smash.execution.actions.lift import LiftMotion
 from smash.execution.actions.pick_and_place import PickAndPlace
-from smash.execution.actions.topple import cubes_high, fall_of, first_cut, pushes_needed
+from smash.execution.actions.topple import BOX_CUT, cubes_high, fall_of, first_cut, pushes_needed
 from smash.execution.executor import Executor
 from smash.execution.grounding import Grounder
 from smash.execution.layout.conditions import violations
@@ -174,6 +174,8 @@ def test_a_push_comes_in_above_the_blocks_that_stay_and_before_the_widest_that_f
     assert fall.blocks == ("b", "c")
     assert fall.tip == pytest.approx(0.03 + 0.2 * 0.06)
     assert fall.height == pytest.approx(0.105)
+    assert fall.manner == BOX_CUT
+    assert fall.follow_through == pytest.approx(2.0 * (0.045 + 0.05) / 2 + (0.045 - 0.04) / 2)
     assert (fall.lowest, fall.widest, fall.rest, fall.longest) == pytest.approx((0.04, 0.045, 0.05, 0.06))
 
 

@@ -76,7 +76,8 @@ TALL_CUT = Manner(0.8, 1.1)
 
 
 BOX_CUT = Manner(0.8, 2.0)
-"""Boxes fall from a rest: a slow push drags narrow ones below along, and a short one leaves a wide one on them."""
+"""Boxes as high as up to 3 cubes fall from a rest: a slower push drags narrow ones below along."""
+
 
 MOST_SWEPT = 9
 """More blocks than this are not swept off the table at once, ..."""
@@ -127,9 +128,9 @@ def manner(height: int, falling: int, boxes: bool = False) -> Manner:
     """How to topple so many cubes, or boxes as high, from this height on; measured, see `smash topple-map`."""
     if height == 1:
         return SWEEP if falling < 5 else TALL_SWEEP if falling < 7 else TALLEST_SWEEP
-    if boxes:
-        return BOX_CUT
-    return SHORT_CUT if falling <= 3 else TALL_CUT
+    if falling > 3:
+        return TALL_CUT
+    return BOX_CUT if boxes else SHORT_CUT
 
 
 @dataclass(frozen=True, slots=True)
