@@ -153,8 +153,8 @@ def _dress_robot(spec: Any, robot: Robot, friction: Friction) -> None:
 
 def _tie(spec: Any, joints: tuple[str, str]) -> None:
     """Let one joint mimic another, as a URDF may say itself."""
-    tie = spec.add_equality(type=mujoco.mjtEq.mjEQ_JOINT, name1=joints[1], name2=joints[0])
-    tie.objtype = mujoco.mjtObj.mjOBJ_JOINT
+    kind, of = mujoco.mjtEq.mjEQ_JOINT, mujoco.mjtObj.mjOBJ_JOINT
+    tie = spec.add_equality(type=kind, objtype=of, name1=joints[1], name2=joints[0])
     tie.data[:2] = 0.0, 1.0
 
 
