@@ -82,6 +82,8 @@ def _measure(robot: Robot) -> None:
 def _describe(robot: Robot) -> None:
     """Say what a robot is, with what is missing of it."""
     from smash.motion.collision import arm_model
+    from smash.motion.hulls import HullChecker
+    from smash.motion.obstacles import Scene
 
     click.echo(_line(robot))
     for name, lower, upper, velocity, force in zip(
@@ -93,5 +95,8 @@ def _describe(robot: Robot) -> None:
     model = arm_model(robot)
     pairs = len(model.base_pairs) + len(model.wrist_pairs)
     click.echo(f"  {len(model.spheres)} spheres, {pairs} pairs of links that can meet")
+    touches = HullChecker(robot, Scene.of_boxes([], [], 0.0).with_table()).contact(robot.ready)
+    if touches is not None:
+        click.echo(f"  at its ready pose, {touches}")
     if not robot.upright:
         click.echo("  its first joint does not turn it about the vertical: it neither carries nor lifts")

@@ -1,4 +1,4 @@
-"""One executor: Franka Panda in PyBullet, OMPL motions, partially grounded execution.
+"""One executor: a robot in a simulated world, OMPL motions, partially grounded execution.
 
 The rooms; each imports those before it in this list, none those after it:
 

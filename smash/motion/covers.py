@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import isfinite, nan
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -35,7 +37,9 @@ def read_cover(robot: Robot) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         try:
             x, y, z, radius = map(float, rest)
         except ValueError:
-            raise MalformedFile(where, f"line {number}: a link and four numbers are allowed") from None
+            x = y = z = radius = nan
+        if not (isfinite(x + y + z) and 0.0 < radius < 1.0):
+            raise MalformedFile(where, f"line {number}: a link, a centre and a radius are allowed [m]")
         if link not in robot.bodies:
             raise MalformedFile(where, f"line {number}: {link!r} is no link of the arm {robot.name!r}")
         body, placement = robot.in_body(link)

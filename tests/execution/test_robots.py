@@ -74,6 +74,26 @@ def test_a_block_is_taken_by_friction_whatever_arm_the_hand_is_on(path, engine):
         assert world.pose("a").position[2] > 0.07
 
 
+def test_motors_in_mujoco_turn_as_the_file_says_and_the_fingers_move_as_one(tmp_path):
+    mujoco = pytest.importorskip("mujoco")
+    from smash.execution.physics import mujoco_model
+
+    path = written(tmp_path)
+    urdf = tmp_path / "panda-hand" / "panda-hand.urdf"
+    urdf.write_text(urdf.read_text().replace('<mimic joint="panda_finger_joint1"/>', ""))
+    model = mujoco_model.build(scene_of(None, robot=path), {}, {}, {})
+    robot = load_robot(path)
+    for name, force in zip(robot.joints, robot.force, strict=True):
+        assert model.jnt_actfrcrange[model.joint(name).id].tolist() == [-force, force]
+    assert model.neq == 1
+    data = mujoco.MjData(model)
+    left, right = (model.joint(name) for name in robot.hand.joints)
+    data.qpos[[left.qposadr[0], right.qposadr[0]]] = 0.03
+    data.ctrl[model.actuator(left.name).id] = 0.03
+    mujoco.mj_step(model, data, 200)
+    assert data.qpos[left.qposadr[0]] == pytest.approx(data.qpos[right.qposadr[0]], abs=0.001)
+
+
 @pytest.mark.slow
 def test_an_episode_of_six_joints_succeeds_and_says_whose_it_is(path, engine):
     scene = scene_of(None, robot=path)

@@ -196,6 +196,12 @@ REFUSED = (
     (None, None, ('type="revolute"', 'type="prismatic"'), None, r"joint 'pan' is prismatic"),
     (None, None, ("wrist2_link", "panda_hand"), None, r"arm and hand both have a link 'panda_hand'"),
     (None, None, ('<mass value="2"/>', '<mass value="0"/>'), None, r"'pan_link' moves and has no `inertial`"),
+    (None, None, ('<mass value="2"/>', '<mass value="heavy"/>'), None, r"'pan_link' moves and has no `inertial`"),
+    (None, None, ('<axis xyz="0 0 1"/>', '<axis xyz="0 1"/>'), None, r"Malformed axis element for joint \[pan\]"),
+    (None, None, ('size="0.08 0.08 0.42"', 'size="0.08 z 0.42"'), None, r"the box of link 'elbow_link': `size`"),
+    (None, None, ('<geometry><box size="0.08 0.08 0.42"/></geometry>', "<geometry/>"), None, r"box, cylinder, sphere"),
+    ("force = [150.0, ", "force = [inf, ", None, None, r"`arm.force`: finite numbers"),
+    ("side = 1", "side = -1", None, None, r"`arm.elbow`: 'elbow' is bent to the other side"),
     (None, None, None, ("opening = 0.04", "opening = 0.06"), r"does not open to 0.06 m"),
     (
         None,
@@ -216,13 +222,14 @@ REFUSED = (
 
 
 @pytest.mark.parametrize(("before", "after", "arm", "hand", "words"), REFUSED)
-def test_what_is_no_robot_is_refused_in_one_line(tmp_path, before, after, arm, hand, words):
+def test_what_is_no_robot_is_refused_in_one_line(tmp_path, capfd, before, after, arm, hand, words):
     changes = [] if before is None else [(before, after)]
     path = written(tmp_path, *changes, arm=arm and [arm], hand=hand and [hand])
     with pytest.raises(MalformedFile, match=words) as refused:
         load_robot(path)
     assert "\n" not in str(refused.value)
     assert str(tmp_path) in str(refused.value)
+    assert capfd.readouterr().err == ""
 
 
 def test_a_urdf_without_shapes_is_refused(tmp_path):
@@ -236,6 +243,18 @@ def test_a_urdf_without_shapes_is_refused(tmp_path):
         load_robot(path)
 
 
+def test_a_mesh_that_is_none_is_refused(tmp_path):
+    path = written(tmp_path, arm=[('<box size="0.08 0.08 0.42"/>', '<mesh filename="x.stl"/>')])
+    (tmp_path / "x.stl").write_text("solid nothing")
+    with pytest.raises(MalformedFile, match="a mesh cannot be read: Could not load resource"):
+        HullChecker(load_robot(path), TABLE)
+
+
+def test_a_joint_of_the_arm_has_a_motor_of_its_own_whatever_its_urdf_says(tmp_path):
+    path = written(tmp_path, arm=[('<axis xyz="0 0 1"/>', '<axis xyz="0 0 1"/><mimic joint="lift"/>')])
+    assert '<mimic joint="lift"' not in load_robot(path).urdf
+
+
 def test_a_mesh_of_another_kind_is_refused(tmp_path):
     (tmp_path / "x.dae").write_text("")
     path = written(tmp_path, arm=[('<box size="0.08 0.08 0.42"/>', '<mesh filename="x.dae"/>')])
@@ -247,6 +266,9 @@ def test_a_table_of_spheres_that_is_missing_or_of_other_links_is_refused(tmp_pat
     robot = six_joints(tmp_path)
     (tmp_path / "six.csv").write_text("link,x,y,z,radius\nstranger,0,0,0,0.1\n")
     with pytest.raises(MalformedFile, match="line 2: 'stranger' is no link of the arm"):
+        arm_model(robot)
+    (tmp_path / "six.csv").write_text("link,x,y,z,radius\npan_link,0,0,0,-0.1\n")
+    with pytest.raises(MalformedFile, match="line 2: a link, a centre and a radius are allowed"):
         arm_model(robot)
     (tmp_path / "six.csv").unlink()
     with pytest.raises(MalformedFile, match=r"`arm.spheres`.*smash robot .* --fit"):

@@ -135,18 +135,27 @@ def _dress_robot(spec: Any, robot: Robot, friction: Friction) -> None:
             shape.name = body.name if number == 0 else f"{body.name} {number}"
             # Inertias follow from the shapes, as in PyBullet: those of the file may be the same for all links.
             shape.mass = body.mass / len(body.geoms)
+    forces = dict(zip(robot.joints, robot.force.tolist(), strict=True)) | dict.fromkeys(hand.joints, hand.force)
     for joint in spec.joints:
-        if joint.name in hand.joints:
-            # What the URDF calls effort would clamp the fingers' force below that of their motors.
-            joint.actfrcrange = [-hand.force, hand.force]
-    for name, force in zip(robot.joints, robot.force, strict=True):
-        _add_motor(spec, name, float(force)).set_to_motor()
+        # What the URDF calls effort would clamp the motors' force below that of the robot's file.
+        joint.actfrcrange = [-forces[joint.name], forces[joint.name]]
+    for name in robot.joints:
+        _add_motor(spec, name, forces[name]).set_to_motor()
     for name in hand.joints:
         _add_motor(spec, name, hand.force).set_to_position(kp=FINGER_STIFFNESS, kv=FINGER_DAMPING)
     # The fingers move as one: apart, they drift sideways together with the block that they squeeze.
+    if not spec.equalities:
+        _tie(spec, hand.joints)
     for tie in spec.equalities:
         tie.solref = GRASP
         tie.solimp = IMPEDANCE
+
+
+def _tie(spec: Any, joints: tuple[str, str]) -> None:
+    """Let one joint mimic another, as a URDF may say itself."""
+    kind, of = mujoco.mjtEq.mjEQ_JOINT, mujoco.mjtObj.mjOBJ_JOINT
+    tie = spec.add_equality(type=kind, objtype=of, name1=joints[1], name2=joints[0])
+    tie.data[:2] = 0.0, 1.0
 
 
 def _add_motor(spec: Any, joint: str, force: float) -> Any:

@@ -1,4 +1,4 @@
-"""What an episode asks of the arm: its motions beside the Panda's limits, its motors, how well it follows.
+"""What an episode asks of the arm: its motions beside the robot's limits, its motors, how well it follows.
 
     python -m smash.execution.trials.effort INSTANCE PLAN [--seed S] [--engine E]
 
@@ -26,7 +26,7 @@ from smash.problem.files.plans import read_plan
 from smash.records.episodes import Episode
 
 TORQUE_RATE = 1000.0
-"""The Panda's limit, of every joint [Nm/s]."""
+"""What the Panda's maker allows every joint [Nm/s]; other makers say nothing of it."""
 
 
 @dataclass

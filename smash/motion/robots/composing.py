@@ -7,9 +7,9 @@ is left out of both. Meshes are named by absolute paths, so that every reader fi
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from copy import deepcopy
-from math import pi
+from math import nan, pi
 from pathlib import Path
 
 from smash.motion.robots.files import PlaceFile, RobotFile
@@ -22,6 +22,22 @@ MOUNT = "smash_mount"
 """The joint between flange and hand."""
 MESHES = (".obj", ".stl")
 """Kinds of meshes that all readers of a robot have in common."""
+
+SHAPES: Mapping[str, tuple[str, ...]] = {
+    "mesh": (),
+    "box": ("size",),
+    "cylinder": ("radius", "length"),
+    "sphere": ("radius",),
+}
+"""What may collide, and the sizes that each has."""
+
+
+def number(text: str) -> float:
+    """Return the number that a text is, not one where it is none."""
+    try:
+        return float(text)
+    except ValueError:
+        return nan
 
 
 class Urdf:
@@ -99,9 +115,22 @@ class Urdf:
             copy.remove(part)
         if copy.find("inertial") is None:
             copy.insert(0, _massless())
+        for collision in copy.findall("collision"):
+            self._check_shape(collision.find("geometry"), link.get("name", ""))
         for mesh in copy.iter("mesh"):
             mesh.set("filename", str(self._mesh(mesh.get("filename", ""), link.get("name", ""))))
         return copy
+
+    def _check_shape(self, geometry: ET.Element | None, link: str) -> None:
+        """Refuse a shape that readers would leave out without an error of theirs."""
+        shape = None if geometry is None else next(iter(geometry), None)
+        if shape is None or shape.tag not in SHAPES:
+            raise MalformedFile(str(self.path), f"a `collision` of link {link!r}: {', '.join(SHAPES)} are allowed")
+        for key in SHAPES[shape.tag]:
+            values = [number(part) for part in shape.get(key, "").split()]
+            if len(values) != (3 if key == "size" else 1) or not all(value > 0.0 for value in values):
+                problem = f"the {shape.tag} of link {link!r}: `{key}` {shape.get(key)!r} is not allowed"
+                raise MalformedFile(str(self.path), problem)
 
     def _mesh(self, name: str, link: str) -> Path:
         """The mesh that a URDF names: absolute, beside the file, or in a package that the file lies in."""
@@ -168,8 +197,10 @@ def _refuse_twins(robot: ET.Element, where: str) -> None:
 
 
 def _turning(joint: ET.Element) -> ET.Element:
-    """A copy of a joint of the arm; one that turns without end gets an end after a turn."""
+    """A copy of a joint of the arm, on its own motor; one that turns without end gets an end after a turn."""
     copy = deepcopy(joint)
+    for mimic in copy.findall("mimic"):
+        copy.remove(mimic)
     if copy.get("type") == "continuous":
         copy.set("type", "revolute")
         limit = copy.find("limit")

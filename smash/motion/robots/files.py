@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from math import isfinite
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar, cast
 
@@ -116,6 +117,8 @@ def read_robot_file(path: Path) -> RobotFile:
         wanted = len(arm.joints) + (key == "padding")
         rows = value if key == "postures" else [] if value is None else [value]
         for row in rows:
+            if not all(map(isfinite, row)):
+                raise MalformedFile(where, f"`arm.{key}`: finite numbers are allowed")
             if len(row) != wanted:
                 raise MalformedFile(where, f"`arm.{key}`: {len(row)} numbers; {wanted} are needed, {_WANTED[key]}")
     for key, joint in (("elbow.joint", arm.elbow and arm.elbow.joint), ("swivel", arm.swivel)):

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 from smash.motion.poses import Matrix, Vector
 from smash.motion.robot import HAND, SHIPPED, Hand, Robot
-from smash.motion.robots.composing import TOOL, Urdf, child_of, compose
+from smash.motion.robots.composing import TOOL, Urdf, child_of, compose, number
 from smash.motion.robots.files import LEVEL, HandFile, PlaceFile, RobotFile, read_hand_file, read_robot_file
+from smash.motion.robots.quiet import first_complaint, overheard
 from smash.problem.errors import MalformedFile, SmashError
 
 DEFAULT_ROBOT = SHIPPED
@@ -98,7 +99,7 @@ def _require_movable(
     for name in moving:
         link = child_of(urdf, name)
         mass = masses.get(link)
-        if mass is None or float(mass.get("value", "0")) <= 0.0:
+        if mass is None or not number(mass.get("value", "")) > 0.0:
             raise MalformedFile(
                 hand_where if name in of_hand else where, f"link {link!r} moves and has no `inertial` with a mass"
             )
@@ -112,10 +113,12 @@ class _Assembly:
         self.hand_path, self.hand_where, self.hand_file = hand_path, str(hand_path), hand_file
         self.tree = urdf
         self.text = ET.tostring(urdf, encoding="unicode")
-        try:
-            self.full: Any = pinocchio.buildModelFromXML(self.text)
-        except ValueError as error:
-            raise MalformedFile(self.where, f"its URDF cannot be read: {str(error).splitlines()[0]}") from None
+        with overheard() as words:
+            try:
+                self.full: Any = pinocchio.buildModelFromXML(self.text)
+            except ValueError as error:
+                reason = first_complaint(words(), str(error).splitlines()[0])
+                raise MalformedFile(self.where, f"its URDF cannot be read: {reason}") from None
         fingers = [self.full.getJointId(name) for name in hand_file.fingers]
         self.model: Any = pinocchio.buildReducedModel(self.full, fingers, np.zeros(self.full.nq))
 
@@ -136,6 +139,8 @@ class _Assembly:
             for joint in outside[:1]:
                 limits = f"{lower[joint]:g} to {upper[joint]:g} rad is allowed"
                 raise MalformedFile(self.where, f"`arm.{key}`: {posture[joint]:g} at {arm.joints[joint]!r}; {limits}")
+        if arm.elbow is not None and arm.elbow.side * arm.ready[arm.joints.index(arm.elbow.joint)] < 0.0:
+            raise MalformedFile(self.where, f"`arm.elbow`: {arm.elbow.joint!r} is bent to the other side in `ready`")
         spheres = None if arm.spheres is None else self.path.parent / arm.spheres
         count = len(arm.joints)
         return Robot(

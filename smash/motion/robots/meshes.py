@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from smash.motion.robot import Robot
+from smash.motion.robots.quiet import first_complaint, overheard
 from smash.problem.errors import MalformedFile
 
 MOST_TRIANGLES = 1400
@@ -24,10 +25,12 @@ def shapes(model: Any, urdf: str, where: str) -> Any:
     Raises:
         MalformedFile: where a mesh cannot be read.
     """
-    try:
-        geometry = pinocchio.buildGeomFromUrdfString(model, urdf, pinocchio.GeometryType.COLLISION)
-    except (ValueError, RuntimeError) as error:
-        raise MalformedFile(where, f"its meshes cannot be read: {str(error).splitlines()[0]}") from None
+    with overheard():
+        try:
+            geometry = pinocchio.buildGeomFromUrdfString(model, urdf, pinocchio.GeometryType.COLLISION)
+        except (ValueError, RuntimeError) as error:
+            reason = first_complaint(str(error), "")
+            raise MalformedFile(where, f"a mesh cannot be read: {reason}") from None
     for part in geometry.geometryObjects:
         if isinstance(part.geometry, coal.BVHModelBase):
             part.geometry.buildConvexHull(True, "Qt")
