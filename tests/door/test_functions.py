@@ -255,6 +255,7 @@ def test_without_an_extra_one_line_says_how_to_get_it(call, words):
         (["draw", "instance", FIGURE_1, "--out", "x.png"], "analysis"),
         (["draw", "gadget", "--out", "x.png"], "analysis"),
         (["compare", "multi-4", "--planner", "greedy"], "analysis"),
+        (["robot"], "execution"),
         (["report", "results"], "analysis"),
         (["records", "export", "results", "--out", "x"], "analysis"),
     ],
