@@ -17,7 +17,7 @@ from smash.execution.executor import Executor
 from smash.execution.layout.bounds import impossible
 from smash.execution.layout.candidates import SPACINGS, candidates
 from smash.execution.layout.conditions import violations
-from smash.execution.layout.laying import NotFound, lay_out
+from smash.execution.layout.laying import NoLayout, NotFound, lay_out
 from smash.execution.layout.rectangles import Rectangles
 from smash.execution.layout.wanted import Place, places_of_instance, places_of_plan
 from smash.execution.policy import OPEN
@@ -28,6 +28,7 @@ from smash.execution.scene.scene_file import (
     read_scene,
     scene_document,
     scene_from_document,
+    scene_of,
 )
 from smash.execution.scene.scene_writing import scene_toml, with_slots
 from smash.execution.scene.tabletop import DIRECTIONS, DoesNotFit, Slot
@@ -49,6 +50,7 @@ from smash.problem.errors import Unsupported
 from smash.problem.files.plans import read_plan
 from smash.problem.sets.generators import generate
 from tests.execution.episodes import buried_plan, buried_target, plan_of
+from tests.six_joints import written
 
 SIDE = default_scene().side
 ROBOT = load_robot()
@@ -138,8 +140,9 @@ def judged(found):
 
 
 @pytest.mark.slow
-@settings(max_examples=12, deadline=None)
-@given(st.integers(1, 6), st.integers(0, 8), st.integers(1, 5), st.booleans(), st.integers(0, 1000))
+@pytest.mark.timeout(600)
+@settings(max_examples=6, deadline=None)
+@given(st.integers(1, 6), st.integers(0, 6), st.integers(1, 4), st.booleans(), st.integers(0, 1000))
 def test_whatever_layout_is_found_keeps_both_conditions_and_overlaps_nowhere(stacks, buffers, height, topple, seed):
     instance = generate("multi", stacks + 3, stacks=stacks, buffers=buffers)[0]
     try:
@@ -154,6 +157,18 @@ def test_the_same_arguments_give_the_same_layout_and_another_seed_another():
     assert low() == low()
     judged(low())
     assert [slot.directions for slot in low(topple=False).tabletop.stacks] == [(), ()]
+
+
+@pytest.mark.slow
+def test_another_arm_has_layouts_within_its_own_reach(tmp_path):
+    robot = written(tmp_path, ("heights = [[0.20, 12], [0.50, 12], [0.70, 6]]", "heights = [[0.25, 3], [0.55, 3]]"))
+    instance = generate("multi", 4, stacks=2, buffers=1)[0]
+    scene = scene_of(None, robot=robot)
+    found = lay_out(Law(instance, PlanOptions(max_topple=1)), scene, height=3, buffer_height=2)
+    judged(found)
+    assert all(0.25 < slot.radius < 0.55 for slot in found.tabletop.slots)
+    with pytest.raises(NoLayout, match="no higher than 3"):
+        lay_out(Law(instance), scene, height=4)
 
 
 def test_a_plan_s_places_have_its_highest_piles_and_a_block_to_spare():
@@ -339,6 +354,7 @@ def test_a_scene_with_too_few_stacks_names_the_command_that_makes_another():
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(900)
 @pytest.mark.parametrize(("blocks", "stacks", "buffers"), [(20, 5, 6), (16, 8, 4)])
 @pytest.mark.parametrize("kind", ["topple", "plain"])
 def test_five_stacks_of_20_and_eight_of_16_are_laid_out_and_carried_out(blocks, stacks, buffers, kind):
