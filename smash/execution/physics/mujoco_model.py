@@ -24,15 +24,16 @@ from smash.execution.scene.tabletop import Friction, Tabletop
 from smash.motion.robot import Robot
 from smash.motion.robots import load_robot
 
-TIME_STEP, HOLDING_STEP = 1 / 960, 1 / 2400
-"""Of the simulation, and while the hand holds something [s]. A contact's friction knows speeds and no places: a held
-block goes on along the tangent where the hand goes round, and so drifts outwards by an amount in proportion to this."""
+TIME_STEP, CARRYING_STEP = 1 / 960, 1 / 4800
+"""Of the simulation, and while the hand carries something round [s]. A contact's friction knows speeds and no places: a
+held block goes on along the tangent where the hand goes round, and so drifts outwards by an amount in proportion to
+this."""
 IMPEDANCE_RATIO = 10.0
 """Friction is so much stiffer than what keeps bodies apart."""
 CONTACT = (0.004, 1.0)
 """Time constant [s] and damping ratio of contacts. MuJoCo's own 0.02 s lets piles sag; with less, a block that falls
 far bounces and slides on."""
-GRASP = (2 * HOLDING_STEP, 1.0)
+GRASP = (2 * CARRYING_STEP, 1.0)
 """Of what the fingers touch, the stiffest that is stable (with the longer step MuJoCo takes twice that one)."""
 IMPEDANCE = (0.95, 0.99, 0.001, 0.5, 2.0)
 TORSION, ROLLING = 0.005, 0.0001

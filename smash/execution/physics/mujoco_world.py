@@ -20,8 +20,10 @@ from smash.execution.scene.block_pose import BlockPose
 from smash.motion.robots.composing import TOOL
 from smash.problem.errors import Unsupported
 
-STEPS, HOLDING_STEPS = round(STEP / models.TIME_STEP), round(STEP / models.HOLDING_STEP)
-"""Steps of the simulation in one of ours, and while the hand holds something."""
+STEPS, CARRYING_STEPS = round(STEP / models.TIME_STEP), round(STEP / models.CARRYING_STEP)
+"""Steps of the simulation in one of ours, and while the hand carries something round."""
+SLOWLY = 0.5
+"""What is held drifts by the square of a joint's speed: below this, the longer step will do [rad/s]."""
 HELD = 0.002
 """Fingers that are kept this far from where they are sent hold something [m]."""
 BANDWIDTH = 100.0
@@ -41,7 +43,7 @@ class MujocoWorld(World):
         robot = self.robot
         made = {name: self._as_made(name) for name in blocks}
         self.model = model = models.build(self.tabletop, blocks, carriers, made)
-        self.data = mujoco.MjData(model)
+        self.data = data = mujoco.MjData(model)
         # What is looked at is worked out in data of its own: looking changes nothing.
         self._seen = mujoco.MjData(model)
         self._arm = np.array([model.joint(name).qposadr[0] for name in robot.joints])
@@ -60,6 +62,9 @@ class MujocoWorld(World):
         self._block_of[[model.geom(models.block_body(name)).id for name in blocks]] = np.arange(len(blocks))
         self._of_robot = model.geom_contype == models.ROBOT
         self._names = list(blocks)
+        # Views of what each step reads and writes: to ask for them anew costs as much as to read them.
+        self._places, self._velocities, self._controls = data.qpos, data.qvel, data.ctrl
+        self._bias, self._carried_weight = data.qfrc_bias, data.qfrc_gravcomp
         self.data.qpos[self._arm] = self._target
         self.data.qpos[self._fingers] = self._finger_target = self.opening
         self._send_fingers()
@@ -72,24 +77,24 @@ class MujocoWorld(World):
     def _advance(self) -> None:
         data, step = self.data, self.robot.hand.speed * STEP
         self._finger_target += min(step, max(-step, self.opening - self._finger_target))
-        data.ctrl[self._finger_motors] = self._finger_target
-        data.ctrl[self._motors] = self._torques()
-        holds = (data.qpos[self._fingers] - self._finger_target).min() > HELD
-        steps = HOLDING_STEPS if holds else STEPS
+        self._controls[self._finger_motors] = self._finger_target
+        self._controls[self._motors] = self._torques()
+        holds = (self._places[self._fingers] - self._finger_target).min() > HELD
+        steps = CARRYING_STEPS if holds and np.abs(self._wanted_velocity).max() > SLOWLY else STEPS
         self.model.opt.timestep = STEP / steps
         mujoco.mj_step(self.model, data, steps)
 
     def _torques(self) -> NDArray[np.float64]:
         """What the arm's motors shall turn with for the next `STEP` [Nm], shape (n,)."""
-        data, velocity = self.data, self._wanted_velocity
+        velocity = self._wanted_velocity
         acceleration = (velocity - self._last_velocity) / STEP
         self._last_velocity = velocity
         # Where the arm should be now: the set-point is for the end of the step, its speed for the middle.
-        behind = self._wanted_position - STEP * velocity - data.qpos[self._arm]
-        slower = velocity - STEP / 2 * acceleration - data.qvel[self._arm]
+        behind = self._wanted_position - STEP * velocity - self._places[self._arm]
+        slower = velocity - STEP / 2 * acceleration - self._velocities[self._arm]
         self._acceleration[self._arm] = acceleration + BANDWIDTH**2 * behind + 2 * BANDWIDTH * slower
-        mujoco.mj_mulM(self.model, data, self._force, self._acceleration)
-        rest = data.qfrc_bias[self._arm] - data.qfrc_gravcomp[self._arm]
+        mujoco.mj_mulM(self.model, self.data, self._force, self._acceleration)
+        rest = self._bias[self._arm] - self._carried_weight[self._arm]
         return np.asarray(self._force[self._arm] + rest)
 
     def _send(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> None:
