@@ -15,9 +15,8 @@ FLOORS = (
     "execution.scene",
     "execution.actions",
     "execution.physics",
-    "execution.layout",
 )
-FLOORS += ("execution", "execution.trials", "execution.viewing")
+FLOORS += ("execution", "execution.layout", "execution.trials", "execution.viewing")
 
 
 def imports_of(path):

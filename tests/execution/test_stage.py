@@ -53,7 +53,7 @@ def test_the_table_that_a_film_paints_once_is_the_one_that_each_still_paints():
 
     closer = Camera(CAMERA.yaw, CAMERA.pitch, 1.0)
     recording = recording_of(2, 0.3)
-    with PyBulletStage(default_scene(), 2, coarse=True) as film, PyBulletStage(default_scene(), 2) as still:
+    with PyBulletStage(default_scene(), "ab", coarse=True) as film, PyBulletStage(default_scene(), "ab") as still:
         for camera in (CAMERA, closer, CAMERA):
             for stage in (film, still):
                 stage.pose(recording, 0)

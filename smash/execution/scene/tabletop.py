@@ -17,6 +17,7 @@ from smash.execution.scene.tray import Tray
 from smash.motion.robots import DEFAULT_ROBOT, load_robot
 from smash.problem.errors import SmashError
 from smash.problem.model import Instance, OnGoal
+from smash.problem.words import counted
 
 DIRECTIONS: Mapping[str, float] = {
     "counter-clockwise": pi / 2,
@@ -280,9 +281,10 @@ class Tabletop:
         for location, slot in slots.items():
             pile = instance.start.get(location, ())
             if not self.has_room(slot, pile):
+                robot, high = load_robot(self.robot).name, counted(len(pile), "block")
                 raise DoesNotFit(
-                    f"instance {instance.name!r} starts with {len(pile)} blocks on {location!r}; "
-                    f"scene {self.name!r} has room for {self.room(slot)} there"
+                    f"instance {instance.name!r} starts with {high} on {location!r}; scene {self.name!r} has room for "
+                    f"{self.room(slot)} there, {slot.radius:.2f} m from robot {robot!r}"
                 )
         return slots
 
