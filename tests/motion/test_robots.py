@@ -281,10 +281,11 @@ def test_an_unknown_name_is_refused_with_those_that_there_are():
 
 
 def test_a_robot_of_one_s_own_is_told_from_another_version_of_it(tmp_path):
-    for folder in ("one", "two"):
+    for folder in ("one", "two", "elsewhere"):
         (tmp_path / folder).mkdir()
-    one = six_joints(tmp_path / "one")
+    one, elsewhere = six_joints(tmp_path / "one"), six_joints(tmp_path / "elsewhere")
     two = six_joints(tmp_path / "two", ("velocity = [3.0, ", "velocity = [2.0, "))
     assert PANDA.label == "panda"
     assert one.label.startswith("six-")
+    assert one.label == elsewhere.label
     assert one.label != two.label

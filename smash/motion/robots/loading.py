@@ -177,7 +177,11 @@ class _Assembly:
     def _label(self) -> str:
         if self.path.parent == FOLDER:
             return self.file.name
-        content = self.path.read_bytes() + self.hand_path.read_bytes() + self.text.encode()
+        arm, hand = self.file.arm, self.hand_path.parent / self.hand_file.urdf
+        files = [self.path, self.hand_path, self.path.parent / arm.urdf, hand]
+        files += [self.path.parent / arm.spheres] if arm.spheres is not None else []
+        files += [Path(mesh.get("filename", "")) for mesh in self.tree.iter("mesh")]
+        content = b"".join(sha256(file.read_bytes()).digest() for file in files if file.is_file())
         return f"{self.file.name}-{sha256(content).hexdigest()[:8]}"
 
     def _bodies(self, hand: Hand) -> dict[str, int]:
