@@ -257,7 +257,9 @@ def test_piles_of_a_map_are_drawn_from_the_boxes_of_the_scene():
 
 def test_a_pile_is_limited_by_its_height_as_the_boxes_may_lie():
     scene = dataclasses.replace(default_scene(), sizes={name: BlockSize(0.05, 0.07, 0.1) for name in "abcdefgh"})
-    with pytest.raises(DoesNotFit, match=r"starts with 8 blocks on 's1'; scene 'default' has room for 7 there, 0\.45 m"):
+    with pytest.raises(
+        DoesNotFit, match=r"starts with 8 blocks on 's1'; scene 'default' has room for 7 there, 0\.45 m"
+    ):
         scene.bind(boxes(s1="abcdefgh"))
     assert scene.bind(boxes(s1="abcdefg"))
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
-from math import ceil, cos, fsum, inf, sin
+from math import ceil, cos, fsum, sin
 
 import numpy as np
 
@@ -67,12 +67,8 @@ SWEEP = Manner(0.3, 2.6)
 """The whole pile falls and nothing stands below: slowly, and far enough to clear the pile's own place."""
 TALL_SWEEP = Manner(0.15, 2.6)
 """The same with 5 or 6 blocks: the upper ones would be thrown out of reach by a faster push."""
-TALLEST_SWEEP = Manner(0.06, 2.6)
-"""The same with 7 or 8: in MuJoCo, at 0.08 m/s, one block in four sweeps comes to rest on top of two others.
-
-In several pushes a second one would ram what the first has left in the strip."""
-NINE_SWEPT = Manner(0.08, 2.6)
-"""The same with 9: more slowly, the last of them falls out of reach."""
+TALLEST_SWEEP = Manner(0.08, 2.6)
+"""The same with more. In several pushes a second one would ram what the first has left in the strip."""
 SHORT_CUT = Manner(0.5, 2.0)
 """Up to 3 blocks fall from the rest of the pile."""
 TALL_CUT = Manner(0.8, 1.1)
@@ -82,9 +78,6 @@ TALL_CUT = Manner(0.8, 1.1)
 BOX_CUT = Manner(0.8, 2.0)
 """Boxes as high as up to 3 cubes fall from a rest: a slower push drags narrow ones below along."""
 
-
-SWEEPS = ((4, SWEEP), (6, TALL_SWEEP), (8, TALLEST_SWEEP), (inf, NINE_SWEPT))
-"""How a whole pile is swept, by the most blocks that it has."""
 MOST_SWEPT = 9
 """More blocks than this are not swept off the table at once, ..."""
 MOST_CUT = 4
@@ -133,7 +126,7 @@ def pushes_needed(height: int, tall: Sequence[float]) -> int:
 def manner(height: int, falling: int, boxes: bool = False) -> Manner:
     """How to topple so many cubes, or boxes as high, from this height on; measured, see `smash topple-map`."""
     if height == 1:
-        return next(how for most, how in SWEEPS if falling <= most)
+        return SWEEP if falling < 5 else TALL_SWEEP if falling < 7 else TALLEST_SWEEP
     if falling > 3:
         return TALL_CUT
     return BOX_CUT if boxes else SHORT_CUT
