@@ -198,7 +198,7 @@ class Tabletop:
 
         Raises:
             DoesNotFit: where the instance has more stacks, buffers or stations, or larger carriers, than the scene has
-                room for, or starts with a higher pile.
+                room for.
         """
         cells = 0 if self.tray is None else self.tray.capacity
         for what, wanted, room in (
@@ -212,18 +212,10 @@ class Tabletop:
                     f"instance {instance.name!r} has {wanted} {what}; scene {self.name!r} has room for {room}"
                     + (self._way_out(instance) if what in ("stacks", "buffers") else "")
                 )
-        slots = {
+        return {
             **dict(zip(instance.stacks, self.stacks, strict=False)),
             **dict(zip(instance.buffers, self.buffers, strict=False)),
         }
-        for location, slot in slots.items():
-            height, room = len(instance.start.get(location, ())), self.room(slot)
-            if height > room:
-                raise DoesNotFit(
-                    f"instance {instance.name!r} starts with {height} blocks on {location!r}; "
-                    f"scene {self.name!r} has room for {room} there"
-                )
-        return slots
 
     def _way_out(self, instance: Instance) -> str:
         """Say what makes a scene that fits, or how a problem without places of its own is imported for this one."""
