@@ -72,6 +72,6 @@ def test_what_is_wrong_with_a_robot_is_one_line_before_anything_moves(filed, cap
     assert (code, "none.toml: cannot be read" in line) == (2, True)
     short = written(filed, ("heights = [[0.20, 12], [0.50, 12], [0.70, 6]]", "heights = [[0.20, 5], [0.40, 5]]"))
     code, line = refused(capfd, monkeypatch, *execute, short)
-    assert (code, "room for 0 there, 0.45 m from robot 'six'" in line) == (2, True)
+    assert (code, "robot 'six' does not reach 2 blocks at 's2'" in line) == (2, True)
     code, line = refused(capfd, monkeypatch, "robot", written(filed, ("[reach]", "[rich]")))
     assert (code, "rich" in line) == (2, True)

@@ -187,6 +187,11 @@ def test_without_a_plan_stacks_may_be_toppled_whole_as_far_as_plans_may():
     assert places_of_instance(instance, OPTIONS[0], 4, 2)[-1] == Place("u11", 2)
 
 
+def test_no_place_is_lower_than_the_piles_of_start_and_goal():
+    places = {place.location: place for place in places_of_instance(buried_target(), OPTIONS[1], 1, 1)}
+    assert (places["s1"], places["s2"]) == (Place("s1", 4, 2), Place("s2", 1, 1))
+
+
 OPTIONS = (PlanOptions(), PlanOptions(max_topple=2), PlanOptions(topple=False))
 
 

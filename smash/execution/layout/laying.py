@@ -70,7 +70,7 @@ def lay_out(
         law: The instance, and what plans may use.
         tabletop: Blocks, speed and robot; its slots do not matter.
         actions: A legal plan, by which places are made; where None, for any plan with piles up to the heights.
-        height: The most blocks of a pile on a stack; all where None.
+        height: The most blocks of a pile on a stack, where start and goal have no higher one; all where None.
         buffer_height: The same on a buffer; at most `BUFFER_HEIGHT` where None.
         attempts: How many arrangements are tried.
         seed: Of the search.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from smash.execution.scene.piles import highest_piles, largest_topples
+from smash.execution.scene.piles import highest_piles, largest_topples, piles_of_ends
 from smash.problem.model import Action, Instance, PlanOptions
 from smash.problem.rules import Law
 
@@ -41,7 +41,9 @@ def places_of_plan(law: Law, actions: Sequence[Action], most: int) -> list[Place
 
 
 def places_of_instance(instance: Instance, options: PlanOptions, height: int, buffer_height: int) -> list[Place]:
-    """Return what any plan may ask for whose piles are no higher than this; a topple takes whole stacks where it may.
+    """Return what any plan may ask for whose piles are no higher than this, or than those of the start and the goal.
+
+    A topple takes whole stacks where it may.
 
     Args:
         instance: The problem.
@@ -49,6 +51,8 @@ def places_of_instance(instance: Instance, options: PlanOptions, height: int, bu
         height: The most blocks of a pile on a stack.
         buffer_height: The same on a buffer.
     """
-    falling = min(height, options.max_topple or height) if options.topple else 0
-    stacks = [Place(name, height, falling) for name in instance.stacks]
-    return stacks + [Place(name, buffer_height) for name in instance.buffers]
+    ends = piles_of_ends(instance)
+    high = {name: max(height, ends[name]) for name in instance.stacks}
+    most = options.max_topple or max(high.values())
+    stacks = [Place(name, tall, min(tall, most) if options.topple else 0) for name, tall in high.items()]
+    return stacks + [Place(name, max(buffer_height, ends[name])) for name in instance.buffers]

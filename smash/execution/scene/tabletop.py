@@ -17,7 +17,6 @@ from smash.execution.scene.tray import Tray
 from smash.motion.robots import DEFAULT_ROBOT, load_robot
 from smash.problem.errors import SmashError
 from smash.problem.model import Instance, OnGoal
-from smash.problem.words import counted
 
 DIRECTIONS: Mapping[str, float] = {
     "counter-clockwise": pi / 2,
@@ -260,7 +259,7 @@ class Tabletop:
 
         Raises:
             DoesNotFit: where the instance has more stacks, buffers or stations, or larger carriers, than the scene has
-                room for, or starts with a higher pile.
+                room for.
         """
         cells = 0 if self.tray is None else self.tray.capacity
         for what, wanted, room in (
@@ -274,19 +273,10 @@ class Tabletop:
                     f"instance {instance.name!r} has {wanted} {what}; scene {self.name!r} has room for {room}"
                     + (self._way_out(instance) if what in ("stacks", "buffers") else "")
                 )
-        slots = {
+        return {
             **dict(zip(instance.stacks, self.stacks, strict=False)),
             **dict(zip(instance.buffers, self.buffers, strict=False)),
         }
-        for location, slot in slots.items():
-            pile = instance.start.get(location, ())
-            if not self.has_room(slot, pile):
-                robot, high = load_robot(self.robot).name, counted(len(pile), "block")
-                raise DoesNotFit(
-                    f"instance {instance.name!r} starts with {high} on {location!r}; scene {self.name!r} has room for "
-                    f"{self.room(slot)} there, {slot.radius:.2f} m from robot {robot!r}"
-                )
-        return slots
 
     def _way_out(self, instance: Instance) -> str:
         """Say what makes a scene that fits, or how a problem without places of its own is imported for this one."""
