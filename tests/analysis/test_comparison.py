@@ -79,7 +79,7 @@ def test_a_problem_that_is_solved_at_the_start_has_full_quality():
 
 def ended(number, planner, seconds, cost=9, **more):
     proven = {"status": "optimal", "lower_bound": 9} if cost == 9 else {}
-    return record(number, [(0.1, cost)], label=planner, cpu_seconds=seconds, **proven | more)
+    return record(number, [(0.1, cost)], label=planner, wall_seconds=seconds, **proven | more)
 
 
 def test_each_paradigm_is_shown_by_its_best_planner_and_the_quickest_that_proves_most_wins():

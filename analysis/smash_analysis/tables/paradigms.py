@@ -26,8 +26,8 @@ PARADIGMS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 """Paradigm -> planners; any other planner is a paradigm of its own, called as it is."""
 SETTING = ["suite", "buffers", "variant"]
 WORDS = (
-    "Each paradigm by its best planner in that setting: problems proven of all, and median processor seconds of the "
-    "proofs (all processes of a run, their start included); where it proves none, its cost above the proven optimum. "
+    "Each paradigm by its best planner in that setting: problems proven of all, and the proofs' median seconds since "
+    "the call; where it proves none, its mean cost above the proven optimum. "
     f"The one that proves most wins, then the faster one; {TOGETHER} (`smash`) holds several of the others and is left "
     "aside."
 )
@@ -41,9 +41,9 @@ def paradigm(planner: str) -> str:
 
 
 def paradigm_table(runs: pd.DataFrame) -> pd.DataFrame:
-    """Return a row a setting and a column a paradigm: what its best planner proves there, in which median CPU time.
+    """Return a row a setting and a column a paradigm: what its best planner proves there, in which median time.
 
-    The best planner proves most, then solves most, then has the least mean `gap`, then the least CPU time. `wins` is
+    The best planner proves most, then solves most, then has the least mean `gap`, then the least time. `wins` is
     the paradigm that does, `TOGETHER` left aside. Where a planner proves nothing its cell has the mean gap; shares are
     of the runs, and planners with fewer of them than another in the same setting are not compared.
 
@@ -75,12 +75,16 @@ def _rank(mine: pd.DataFrame) -> tuple[float, ...]:
 
 def _cell(mine: pd.DataFrame) -> str:
     if mine["proven"].any():
-        return f"{mine['proven'].sum()}/{len(mine)} in {_seconds(mine[mine['proven']]):.2f} s"
+        return f"{mine['proven'].sum()}/{len(mine)} in {_shown(_seconds(mine[mine['proven']]))}"
     if not mine["solved"].any():
         return "no plan"
     return f"+{100 * mine['gap'].mean():.0f} %" if mine["gap"].notna().any() else "plans"
 
 
 def _seconds(mine: pd.DataFrame) -> float:
-    """Return the median CPU time of runs, or their wall time where none was recorded."""
-    return float(mine["cpu_seconds"].fillna(mine["wall_seconds"]).median())
+    """Return the median time of runs: the last plan's where a run ended before its supervisor saw it."""
+    return float(mine[["wall_seconds", "best_seconds"]].max(axis=1).median())
+
+
+def _shown(seconds: float) -> str:
+    return f"{seconds:.2f} s" if seconds >= 0.1 else f"{1000 * seconds:.0f} ms"
