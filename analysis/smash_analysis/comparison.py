@@ -79,6 +79,7 @@ def _row(mine: pd.DataFrame) -> dict[str, object]:
         "proven": f"{int(mine['proven'].sum())}/{len(mine)}",
         "first plan [s]": of_seconds(median_iqr, mine["first_seconds"]),
         "best plan [s]": of_seconds(median_iqr, mine["best_seconds"]),
+        "CPU [s]": of_seconds(median_iqr, mine["cpu_seconds"].astype(float)),
         "cost, solved": mean_std(mine["cost"]),
         "cost, common": f"{mean_std(shared['cost'])} (n={len(shared)})",
         "median cost": median_iqr(mine["cost"], 1),

@@ -26,7 +26,7 @@ from smash.planners.protocol import (
     settings_of,
 )
 from smash.problem.actions.registry import FAMILY
-from smash.problem.model import Instance, PlanOptions
+from smash.problem.model import Instance, OnGoal, PlanOptions
 from smash.problem.problem import Problem
 
 GREEDY_SHARE = 0.1
@@ -126,6 +126,13 @@ def modelled(problem: Problem) -> str | None:
     return None if len(problem.instance.blocks) <= FEW_BLOCKS else f"more than {FEW_BLOCKS} blocks"
 
 
+def always_fits(problem: Problem) -> bool:
+    """Whether the choices of the precedence graph are a plan with any number of buffers (docs/theory.md, theorem 1)."""
+    instance = problem.instance
+    aside = any(instance.start.get(buffer) for buffer in instance.buffers)
+    return problem.options.topple and not isinstance(instance.goal, OnGoal) and not aside
+
+
 class _Parts:
     """The methods of one solve: searches and beams go on where their turn before ended."""
 
@@ -213,7 +220,8 @@ class _Parts:
         from smash.planners.precedence.bound import ORIGIN, precedence_bound
 
         end = end_of(until, self.precedence_share(problem))
-        if self._greedy is not None:  # what greedy passes are left keep their time, if that is not nearly all
+        if self._greedy is not None and not always_fits(problem):
+            # What greedy passes are left keep their time, if that is not nearly all.
             began = perf_counter()
             rest = end - began
             until = min(until, began + max(LEAST_SHARE * rest, rest - self._greedy.seconds_left()))

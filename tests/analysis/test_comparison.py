@@ -107,6 +107,11 @@ def test_a_paradigm_without_a_plan_says_so():
     assert (row["PDDL, satisficing"], row["greedy"], row["wins"]) == ("no plan", "plans", "greedy")
 
 
+def test_processor_seconds_are_of_all_runs_that_recorded_them():
+    runs = [record(0, [(1.0, 10)], cpu_seconds=2.0), record(1, cpu_seconds=4.0), record(2, cpu_seconds=None)]
+    assert one(comparison_table(compared(runs)), planner="p")["CPU [s]"] == "3.00 [2.50, 3.50]"
+
+
 @pytest.mark.slow
 def test_tables_and_curves_are_made(tmp_path):
     runs = [record(n, [(0.5, 9)], variant=v, label=x) for n in range(2) for v in ("topple", "no-topple") for x in "ab"]

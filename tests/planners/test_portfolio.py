@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import random
 from time import perf_counter
 
 import pytest
@@ -16,6 +17,7 @@ from smash.problem import Costs, Law, PlanOptions, make_instance
 from smash.problem.model import StacksGoal
 from smash.problem.problem import Problem
 from smash.problem.sets.generators import generate
+from smash.problem.sets.open_instances import Shape, draw_instance
 from smash.problem.sets.suites import read_suite
 from tests.arrangements import wide
 from tests.oracle import optimal_cost
@@ -240,3 +242,17 @@ def test_where_there_was_no_time_for_a_first_plan_nothing_searches_for_a_cheaper
         run(problem, log, perf_counter() + 10)
     assert log.best is None
     assert not log.details
+
+
+@pytest.mark.parametrize(("goal", "kept"), [("stacks", 6.0), ("on", 1.0)])
+def test_where_its_choices_always_are_a_plan_the_precedence_graph_keeps_nothing_for_greedy_passes(
+    goal, kept, monkeypatch
+):
+    shape = Shape(60, 4, 1, kind=goal)
+    problem = Problem(draw_instance("x", shape, random.Random(1)), PlanOptions(topple=True))
+    parts, log, ends = _Parts(Settings()), SolveLog(problem), []
+    monkeypatch.setattr("smash.planners.precedence.bound.precedence_bound", lambda *given, **_: ends.append(given[1]))
+    parts.greedy(problem, log, -math.inf)
+    monkeypatch.setattr("smash.planners.greedy.GreedyRun.seconds_left", lambda run: 1e6)
+    parts.precedence(problem, log, perf_counter() + 6.0)
+    assert ends[0] - perf_counter() == pytest.approx(kept, abs=1.0)
