@@ -48,6 +48,10 @@ LARGE_SHARE = 0.6
 """Share of the remaining budget for the precedence graph with more blocks: the beam gets the rest."""
 LEAST_SHARE = 0.1
 """What the precedence graph gets in any case, where greedy passes are left that take long."""
+FITTING_SHARE = 0.5
+"""The same where its choices always are a plan, not all of the passes would end, and there is time for a proof."""
+PROOF_SECONDS = 1e-3
+"""What a proof with topple takes, per block: 1 to 8 s from 1,000 to 10,000 blocks."""
 FIRST_SHARE, FIRST_SECONDS = 0.1, 1.0
 """The least of both is for the first beam, and for more greedy passes, before the exact search: a better plan lets
 that leave out more."""
@@ -220,11 +224,13 @@ class _Parts:
         from smash.planners.precedence.bound import ORIGIN, precedence_bound
 
         end = end_of(until, self.precedence_share(problem))
-        if self._greedy is not None and not always_fits(problem):
-            # What greedy passes are left keep their time, if that is not nearly all.
+        if self._greedy is not None:  # what greedy passes are left keep their time, if that is not nearly all
             began = perf_counter()
             rest = end - began
-            until = min(until, began + max(LEAST_SHARE * rest, rest - self._greedy.seconds_left()))
+            passes = self._greedy.seconds_left()
+            proof = FITTING_SHARE * rest > PROOF_SECONDS * len(problem.instance.blocks) and always_fits(problem)
+            least = FITTING_SHARE if proof and passes > rest else LEAST_SHARE
+            until = min(until, began + max(least * rest, rest - passes))
         precedence_bound(
             problem,
             until,
