@@ -317,4 +317,5 @@ class HittingSetSolver:
 
 def _share(deadline: float, share: float) -> float:
     """Return when a share of the time left is over."""
-    return deadline - (1.0 - share) * (deadline - perf_counter())
+    now = perf_counter()
+    return now + share * (deadline - now)
