@@ -195,7 +195,7 @@ beside-greedy: needs-planning ## smash beside greedy alone on sixty stated probl
 bench-records: needs-parquet ## what checking, exporting and reporting 45,000 runs takes (minutes)
 	$(BIN)/python -m smash.experiments.studies.records_at_scale
 
-scaling: needs-analysis ## time over 4 to 1,000 blocks, per planner: curves and exponents (hours; it can be resumed)
+scaling: needs-analysis ## time over 4 to 10,000 blocks, per planner: curves and exponents (hours; it can be resumed)
 	$(BIN)/smash scaling --out runs/scaling
 	$(BIN)/python -m smash_analysis.scaling runs/scaling
 

@@ -30,11 +30,10 @@ LEFT = {
     "installation.md": 2,
     "layered.md": 2,
     "motion.md": 4,
-    "open-instances.md": 3,
     "paradigms.md": 1,
-    "pddl.md": 8,
+    "pddl.md": 4,
     "physics.md": 1,
-    "theory.md": 2,
+    "theory.md": 1,
 }
 """Page -> blocks that do not say yet where their figures are from: to become fewer, never more."""
 

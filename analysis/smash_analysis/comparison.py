@@ -1,4 +1,4 @@
-"""A comparison of planners on the same problems: coverage, times, costs, gaps, proofs, memory, and every failure.
+"""A comparison of planners on the same problems: who wins where, coverage, times, costs, gaps, memory, every failure.
 
 Costs of different planners are means over different subsets as soon as their coverage differs. So each is given
 twice: over all that the planner solved, and over the problems that every planner with a plan of that variant solved.
@@ -19,6 +19,7 @@ from smash_analysis.metrics import PREFIX, metric_names
 from smash_analysis.statistics.conditions import conditions
 from smash_analysis.tables.believed import believed_of
 from smash_analysis.tables.latex import write_latex
+from smash_analysis.tables.paradigms import WORDS, paradigm_table
 from smash_analysis.tables.runs import runs_table
 from smash_analysis.tables.writing import markdown, mean_std, median_iqr, of_seconds, share, write_csv
 
@@ -78,6 +79,7 @@ def _row(mine: pd.DataFrame) -> dict[str, object]:
         "proven": f"{int(mine['proven'].sum())}/{len(mine)}",
         "first plan [s]": of_seconds(median_iqr, mine["first_seconds"]),
         "best plan [s]": of_seconds(median_iqr, mine["best_seconds"]),
+        "CPU [s]": of_seconds(median_iqr, mine["cpu_seconds"].astype(float)),
         "cost, solved": mean_std(mine["cost"]),
         "cost, common": f"{mean_std(shared['cost'])} (n={len(shared)})",
         "median cost": median_iqr(mine["cost"], 1),
@@ -116,7 +118,8 @@ def write(found: Believed, out: Path) -> list[Path]:
     out.mkdir(parents=True, exist_ok=True)
     runs = compared(records)
     table, outcomes, failures = comparison_table(runs), outcome_table(runs), failure_table(runs)
-    parts = {"comparison": table, "outcomes": outcomes, "failures": failures}
+    paradigms = paradigm_table(runs)
+    parts = {"comparison": table, "paradigms": paradigms, "outcomes": outcomes, "failures": failures}
     files = []
     for name, part in parts.items():
         files.append(out / f"{name}.csv")
@@ -124,7 +127,8 @@ def write(found: Believed, out: Path) -> list[Path]:
     left_out = [f"- {visible(line)}" for line in found.lines()]
     page = ["# Comparison", ""]
     page += ["## Contradictions, and what is left out", "", *left_out, ""] if left_out else []
-    page += [markdown(table), "## How the runs ended", "", markdown(outcomes)]
+    page += ["## Who wins where", "", WORDS, "", markdown(paradigms), "## Every planner", "", markdown(table)]
+    page += ["## How the runs ended", "", markdown(outcomes)]
     page += ["## Failures and their reasons", "", markdown(failures) if len(failures) else "None.\n"]
     page += [] if left_out else ["## Contradictions between planners", "", "None."]
     files.append(out / "comparison.md")

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 PAPERS_FIRST_FEASIBLE = {4: (0.13, 0.22), 6: (0.49, 0.66), 9: (2.8, 3.9)}
 """Blocks -> seconds to the first feasible solution that the paper reports (Gurobi, least and most of its settings)."""
 PAPERS_BARS = "paper, Gurobi, first feasible"
+MARGIN = 1.4
+"""Beside the fewest and the most blocks, a factor."""
 GROUP = ["label", "variant", "room"]
 MEASURES = {"first_seconds": "first plan", "proof_seconds": "proven optimum"}
 
@@ -89,9 +91,10 @@ def exponent_table(cells: pd.DataFrame) -> pd.DataFrame:
 
 
 def scaling_chart(cells: pd.DataFrame, column: str) -> Chart:
-    """Return median seconds over blocks on log axes: a panel per variant and room, a curve per planner."""
+    """Return median seconds over blocks on log axes: a panel per variant and room, a curve per planner that has any."""
     variants, rooms = sorted(cells["variant"].unique()), sorted(cells["room"].unique())
-    legend = curves(sorted(cells["label"].unique()))
+    legend = curves(sorted(cells[cells[column].notna()]["label"].unique()))
+    least, most = cells["blocks"].min() / MARGIN, cells["blocks"].max() * MARGIN
 
     def panel(variant: str, room: str) -> Panel:
         part = cells[(cells["variant"] == variant) & (cells["room"] == room)]
@@ -103,7 +106,9 @@ def scaling_chart(cells: pd.DataFrame, column: str) -> Chart:
             _mark_paper(axis)
             axis.set_xscale("log")
             axis.set_yscale("log")
+            axis.set_xlim(least, most)
             axis.xaxis.set_major_formatter("{x:g}")
+            axis.xaxis.set_minor_formatter("")
             axis.yaxis.set_major_formatter("{x:g}")
 
         words = "as many buffers as blocks" if room == "blocks" else counted(int(room), "buffer")

@@ -33,7 +33,7 @@ def command(
     seed: int,
     out: Path,
 ) -> None:
-    """Run planners on random instances of 4 to 1,000 blocks, with and without topple, and record every run.
+    """Run planners on random instances of 4 to 10,000 blocks, with and without topple, and record every run.
 
     Each size has no buffer, the paper's 12, and as many as blocks. Curves and growth exponents are made from the
     records by `python -m smash_analysis.scaling OUT`; `make scaling` does both. Start it again and it does what is

@@ -26,7 +26,7 @@ from smash.planners.protocol import (
     settings_of,
 )
 from smash.problem.actions.registry import FAMILY
-from smash.problem.model import Instance, PlanOptions
+from smash.problem.model import Instance, OnGoal, PlanOptions
 from smash.problem.problem import Problem
 
 GREEDY_SHARE = 0.1
@@ -48,6 +48,10 @@ LARGE_SHARE = 0.6
 """Share of the remaining budget for the precedence graph with more blocks: the beam gets the rest."""
 LEAST_SHARE = 0.1
 """What the precedence graph gets in any case, where greedy passes are left that take long."""
+FITTING_SHARE = 0.5
+"""The same where its choices always are a plan, not all of the passes would end, and there is time for a proof."""
+PROOF_SECONDS = 1e-3
+"""What a proof with topple takes, per block: 1 to 8 s from 1,000 to 10,000 blocks."""
 FIRST_SHARE, FIRST_SECONDS = 0.1, 1.0
 """The least of both is for the first beam, and for more greedy passes, before the exact search: a better plan lets
 that leave out more."""
@@ -124,6 +128,13 @@ def modelled(problem: Problem) -> str | None:
     if problem.open_rest is not None:
         return problem.open_rest
     return None if len(problem.instance.blocks) <= FEW_BLOCKS else f"more than {FEW_BLOCKS} blocks"
+
+
+def always_fits(problem: Problem) -> bool:
+    """Whether the choices of the precedence graph are a plan with any number of buffers (docs/theory.md, theorem 1)."""
+    instance = problem.instance
+    aside = any(instance.start.get(buffer) for buffer in instance.buffers)
+    return problem.options.topple and not isinstance(instance.goal, OnGoal) and not aside
 
 
 class _Parts:
@@ -216,7 +227,10 @@ class _Parts:
         if self._greedy is not None:  # what greedy passes are left keep their time, if that is not nearly all
             began = perf_counter()
             rest = end - began
-            until = min(until, began + max(LEAST_SHARE * rest, rest - self._greedy.seconds_left()))
+            passes = self._greedy.seconds_left()
+            proof = FITTING_SHARE * rest > PROOF_SECONDS * len(problem.instance.blocks) and always_fits(problem)
+            least = FITTING_SHARE if proof and passes > rest else LEAST_SHARE
+            until = min(until, began + max(least * rest, rest - passes))
         precedence_bound(
             problem,
             until,

@@ -7,6 +7,7 @@ import pytest
 from smash_analysis.charts.curves import best_known, coverage_curve, quality_curve
 from smash_analysis.comparison import compared, comparison_table, failure_table, make, outcome_table
 from smash_analysis.tables.believed import believed_of
+from smash_analysis.tables.paradigms import TOGETHER, paradigm_table
 
 from tests.analysis.made_up import record, write
 
@@ -74,6 +75,41 @@ def test_curves_count_every_problem_at_every_time():
 def test_a_problem_that_is_solved_at_the_start_has_full_quality():
     runs = [record(0, [(0.0, 0)])]
     assert quality_curve(runs, best_known(runs), np.array([1.0])).tolist() == [1.0]
+
+
+def ended(number, planner, seconds, cost=9, **more):
+    proven = {"status": "optimal", "lower_bound": 9} if cost == 9 else {}
+    return record(number, [(0.1, cost)], label=planner, wall_seconds=seconds, **proven | more)
+
+
+def test_each_paradigm_is_shown_by_its_best_planner_and_the_quickest_that_proves_most_wins():
+    runs = [ended(n, "smash", 0.1) for n in range(2)]
+    runs += [ended(n, "fd-opt:chain", 2.0 + n) for n in range(2)]
+    runs += [ended(0, "symk-opt", 0.5), record(1, label="symk-opt")]
+    runs += [ended(n, "clingo", 1.0) for n in range(2)]
+    runs += [ended(n, "fd-lama", 5.0, cost=11) for n in range(2)]
+    (row,) = paradigm_table(compared(runs)).to_dict("records")
+    assert row[TOGETHER] == "2/2 in 0.10 s"
+    assert row["PDDL, optimal"] == "2/2 in 2.50 s"
+    assert row["PDDL, satisficing"] == "+22 %"
+    assert row["wins"] == "answer sets"
+
+
+def test_a_planner_with_fewer_runs_than_others_is_not_compared():
+    runs = [ended(n, "didp", 1.0) for n in range(2)] + [ended(0, "clingo", 0.1), record(0, label="mine")]
+    (row,) = paradigm_table(compared(runs)).to_dict("records")
+    assert (row["answer sets"], row["mine"], row["wins"]) == ("", "", "dynamic programming")
+
+
+def test_a_paradigm_without_a_plan_says_so():
+    runs = [record(0, label="enhsp"), ended(0, "greedy", 0.1, cost=11)]
+    (row,) = paradigm_table(compared(runs)).to_dict("records")
+    assert (row["PDDL, satisficing"], row["greedy"], row["wins"]) == ("no plan", "plans", "greedy")
+
+
+def test_processor_seconds_are_of_all_runs_that_recorded_them():
+    runs = [record(0, [(1.0, 10)], cpu_seconds=2.0), record(1, cpu_seconds=4.0), record(2, cpu_seconds=None)]
+    assert one(comparison_table(compared(runs)), planner="p")["CPU [s]"] == "3.00 [2.50, 3.50]"
 
 
 @pytest.mark.slow

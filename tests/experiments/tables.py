@@ -4,7 +4,7 @@ from smash_analysis.comparison import compared, comparison_table, outcome_table
 
 from smash.records.believing import believed_runs
 
-MEASURED = ["first plan [s]", "best plan [s]", "memory [MiB]"]
+MEASURED = ["first plan [s]", "best plan [s]", "CPU [s]", "memory [MiB]"]
 
 
 def tables(results):

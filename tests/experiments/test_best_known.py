@@ -238,8 +238,8 @@ def test_the_committed_list_reads_back_as_it_was_written(committed):
     assert csv_text(committed.sorted()) == (LIST / "best-known.csv").read_text()
 
 
-def test_the_sizes_go_from_solved_to_unsolved_with_and_without_topple(committed):
-    for variant in ("topple", "no-topple"):
+def test_the_sizes_go_from_solved_to_unsolved_with_caps_and_without_topple(committed):
+    for variant in ("max-topple-4", "max-topple-2", "no-topple"):
         proven = {entry.proven for entry in committed.entries.values() if entry.variant == variant}
         assert proven == {True, False}
 

@@ -2,9 +2,10 @@
 
 import math
 
+import pandas as pd
 import pytest
 from click.testing import CliRunner
-from smash_analysis.scaling import exponent, make
+from smash_analysis.scaling import exponent, make, scaling_chart
 
 from smash.cli.scaling import command
 from smash.experiments.studies.scaling import LARGEST, scaling_experiment, write_scaling_suites
@@ -31,6 +32,20 @@ def test_exponents_are_slopes_on_log_axes():
     sizes = [10.0, 20.0, 40.0, 80.0]
     assert exponent(sizes, [size**1.5 for size in sizes]) == pytest.approx(1.5)
     assert math.isnan(exponent(sizes, [1.0, 2.0, math.nan, math.nan]))
+
+
+def cells():
+    """Two planners on three sizes, one of which proves nothing."""
+    rows = [("greedy", blocks, math.nan) for blocks in (4, 100, 10_000)] + [("smash", 4, 0.1), ("smash", 9, 0.2)]
+    table = pd.DataFrame(rows, columns=["label", "blocks", "proof_seconds"])
+    return table.assign(variant="topple", room="0")
+
+
+def test_every_panel_shows_the_same_sizes_and_names_only_who_has_a_curve():
+    chart = scaling_chart(cells(), "proof_seconds")
+    assert [curve.name for curve in chart.legend] == ["smash"]
+    (axis,) = chart.figure().axes
+    assert axis.get_xlim()[0] < 4 < 10_000 < axis.get_xlim()[1]
 
 
 @pytest.mark.slow

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import random
 from time import perf_counter
 
 import pytest
@@ -16,6 +17,7 @@ from smash.problem import Costs, Law, PlanOptions, make_instance
 from smash.problem.model import StacksGoal
 from smash.problem.problem import Problem
 from smash.problem.sets.generators import generate
+from smash.problem.sets.open_instances import Shape, draw_instance
 from smash.problem.sets.suites import read_suite
 from tests.arrangements import wide
 from tests.oracle import optimal_cost
@@ -240,3 +242,16 @@ def test_where_there_was_no_time_for_a_first_plan_nothing_searches_for_a_cheaper
         run(problem, log, perf_counter() + 10)
     assert log.best is None
     assert not log.details
+
+
+@pytest.mark.parametrize(("goal", "passes", "kept"), [("stacks", 1e6, 5.0), ("on", 1e6, 1.0), ("stacks", 8.0, 2.0)])
+def test_the_precedence_graph_gets_half_where_its_choices_always_are_a_plan_and_passes_would_not_end(
+    goal, passes, kept, monkeypatch
+):
+    problem = Problem(draw_instance("x", Shape(60, 4, 1, kind=goal), random.Random(1)), PlanOptions(topple=True))
+    parts, log, ends = _Parts(Settings()), SolveLog(problem), []
+    monkeypatch.setattr("smash.planners.precedence.bound.precedence_bound", lambda *given, **_: ends.append(given[1]))
+    parts.greedy(problem, log, -math.inf)
+    monkeypatch.setattr("smash.planners.greedy.GreedyRun.seconds_left", lambda run: passes)
+    parts.precedence(problem, log, perf_counter() + 6.0)  # six tenths of ten seconds
+    assert ends[0] - perf_counter() == pytest.approx(kept, abs=0.9)

@@ -10,6 +10,7 @@ from smash.problem.errors import MalformedFile
 
 BEGIN = "<!-- made by `smash best-known table`: begin -->\n"
 END = "<!-- made by `smash best-known table`: end -->\n"
+SOURCE = "<!-- from: make best-known -> results/best-known/best-known.csv -->"
 
 
 def open_table(known: BestKnown) -> str:
@@ -23,12 +24,15 @@ def open_table(known: BestKnown) -> str:
     return "\n".join(
         [
             f"Proven optimal: {sum(entry.proven for entry in entries)} of {len(entries)}.",
+            SOURCE,
             "",
             *_markdown(["proven, of all", *variants], counts),
+            SOURCE,
             "",
             f"Still open: {len(rows)}.",
             "",
             *_markdown(head, rows),
+            SOURCE,
             "",
         ]
     )

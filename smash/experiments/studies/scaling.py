@@ -1,4 +1,4 @@
-"""The scaling benchmark: each planner over sizes from the paper's to a thousand blocks, as far as it still answers."""
+"""The scaling benchmark: each planner over the paper's sizes to ten thousand blocks, as far as it still answers."""
 
 from __future__ import annotations
 
@@ -19,14 +19,18 @@ SIZES: tuple[tuple[int, int], ...] = (
     (50, 5),
     (100, 10),
     (200, 20),
+    (300, 30),
     (500, 25),
     (1000, 50),
+    (2000, 100),
+    (5000, 150),
+    (10_000, 200),
 )
 """(blocks, stacks): the paper's three sizes, then wider tables."""
 LARGEST: Mapping[str, int] = {
-    "smash": 1000,
-    "precedence": 1000,
-    "greedy": 1000,
+    "smash": 10_000,
+    "precedence": 10_000,
+    "greedy": 10_000,
     "astar": 15,
     "smash-layered": 15,
     "smash-flow": 4,

@@ -135,7 +135,7 @@ class _Passes:
         self._sorted: list[Step] = []
         self._hopeless = False
         self._longest = 0.0
-        self._passes = 0
+        self._passes, self._spent = 0, 0.0
 
     def improving(self, deadline: float, patient: bool, first_until: float) -> Iterator[list[Step]]:
         """Yield the first plan and every better one; begin no pass that would end too late, and end one that does."""
@@ -159,7 +159,8 @@ class _Passes:
             self._passes += not later
             if self._keep(made, deadline) and self._is_new(self.best):
                 yield self.best
-            self._longest = max(self._longest, perf_counter() - began)
+            took = perf_counter() - began
+            self._longest, self._spent = max(self._longest, took), self._spent + (0.0 if later else took)
 
     def _first_plans(self, latest: float) -> Iterator[list[Step]]:
         """Yield what there is before the passes that learn; `best` is empty where the first pass was given up."""
@@ -199,7 +200,10 @@ class _Passes:
         return not self._sorted or cost_of(steps) < cost_of(self._sorted)
 
     def seconds_left(self) -> float:
-        return 0.0 if self._hopeless else self._longest * max(0, PASSES + len(self.toppled) - self._passes)
+        if self._hopeless:
+            return 0.0
+        mean = self._spent / self._passes if self._passes else self._longest
+        return mean * max(0, PASSES + len(self.toppled) - self._passes)
 
     def _all_attempts(self) -> Iterator[tuple[Sequence[int], float, bool]]:
         """Yield (stacks toppled at the start, noise, whether for the patient alone).

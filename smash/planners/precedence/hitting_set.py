@@ -33,8 +33,9 @@ MAXSAT_MODULE = "pysat"
 TOLERANCE = 1e-6
 DIVE_SECONDS = 0.3
 """Longest time for making one feasible choice cheaper."""
-ROUNDINGS = 40
-"""Random roundings of the LP solution from which rows are taken before the integer solves."""
+ROUNDINGS, ROUND_SHARE = 40, 0.1
+"""Random roundings of the LP solution from which rows are taken before the integer solves and MaxSAT, and the share of
+the time left that they may take before the latter."""
 INTERPRETED_SECONDS, INTERPRETED_BLOCKS = 0.5, 500
 """How long, and with how many blocks, the kernels are interpreted: what ends sooner needs no library to be loaded."""
 COMPILE_SECONDS, MOST_COMPILE_SECONDS = 1.5, 30.0
@@ -235,9 +236,13 @@ class HittingSetSolver:
                 return
 
     def _count(self, turns: TurnGraph, deadline: float) -> None:
-        """Find the fewest choices by MaxSAT, adding the cycles that each answer leaves, until one leaves none."""
+        """Find the fewest choices by MaxSAT, adding the cycles that each answer leaves, until one leaves none.
+
+        An answer is there only once all is proven, so that cycles of four and more blocks have to be known before.
+        """
         from smash.planners.precedence.maxsat import MaxSat
 
+        self._round(_share(deadline, ROUND_SHARE))
         rows = self.state.rows
 
         def tell(fewest: int) -> bool:
@@ -312,4 +317,5 @@ class HittingSetSolver:
 
 def _share(deadline: float, share: float) -> float:
     """Return when a share of the time left is over."""
-    return deadline - (1.0 - share) * (deadline - perf_counter())
+    now = perf_counter()
+    return now + share * (deadline - now)

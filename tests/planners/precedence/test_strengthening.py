@@ -118,6 +118,26 @@ def test_short_cycles_that_there_was_no_time_for_are_added_where_an_answer_leave
 
 
 @NO_MAXSAT
+@pytest.mark.usefixtures("at_once")
+def test_maxsat_begins_with_long_cycles_that_the_relaxation_did_not_ask_for(kernels, monkeypatch):
+    from smash.planners.precedence import maxsat
+
+    given = []
+    begin = maxsat.MaxSat.__init__
+
+    def noted(self, turns, rows, *more):
+        given.append({row for row in rows if len(row) > 3})
+        begin(self, turns, rows, *more)
+
+    monkeypatch.setattr(maxsat.MaxSat, "__init__", noted)
+    for roundings in (0, hitting_set.ROUNDINGS):
+        monkeypatch.setattr(hitting_set, "ROUNDINGS", roundings)
+        HittingSetSolver(build_graph(Problem(wide(80, 14, seed=4), PlanOptions(topple=False)))).solve(math.inf)
+    without, with_them = given
+    assert len(with_them) > len(without)
+
+
+@NO_MAXSAT
 def test_listing_short_cycles_ends_at_the_deadline(monkeypatch):
     from smash.planners.precedence import maxsat
     from smash.planners.precedence.turns import turn_graph
