@@ -3,6 +3,12 @@
 Nothing is imported before `main` is called: until then Ctrl-C is Python's own.
 """
 
+TYPE_CHECKING = False
+
+if TYPE_CHECKING:
+    from types import FrameType
+    from typing import NoReturn
+
 
 def main() -> None:
     """Run the command.
@@ -22,27 +28,35 @@ def main() -> None:
 
 
 def _watch() -> None:
-    """Make Ctrl-C wait for the end of an import: one that is cut short tells of a missing package, or hides it."""
     import signal
 
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is ignored, as in the background
-        signal.signal(signal.SIGALRM, _interrupt)
         signal.signal(signal.SIGINT, _interrupt)
 
 
-def _interrupt(number: int, frame: object) -> None:
-    """Raise `KeyboardInterrupt`, after the import that is under way where there is one.
+def _interrupt(number: int, frame: "FrameType | None") -> None:
+    """Raise `KeyboardInterrupt`, where something is being imported after that.
+
+    An import that is cut short hides it, or tells of a package that is missing.
 
     Raises:
-        KeyboardInterrupt: where nothing is being imported.
+        KeyboardInterrupt: at once where nothing is being imported.
     """
-    import signal
+    import sys
 
+    importer, importing = None, False
     while frame is not None:
-        if frame.f_code.co_filename.startswith("<frozen importlib"):  # type: ignore[attr-defined]
-            signal.setitimer(signal.ITIMER_REAL, 0.005)
-            return
-        frame = frame.f_back  # type: ignore[attr-defined]
+        above = importing
+        importing = frame.f_code.co_filename.startswith("<frozen importlib")
+        importer = frame if above and not importing else importer
+        frame = frame.f_back
+    if importer is None:
+        raise KeyboardInterrupt
+    importer.f_trace = _stop  # called at the next line of who began to import
+    sys.settrace(lambda *_: None)
+
+
+def _stop(*_: object) -> "NoReturn":
     raise KeyboardInterrupt
 
 
@@ -52,7 +66,6 @@ def _end() -> None:
 
     if signal.getsignal(signal.SIGINT) is _interrupt:
         signal.signal(signal.SIGINT, _leave)
-        signal.signal(signal.SIGALRM, signal.SIG_IGN)
 
 
 def _leave(*_: object) -> None:
