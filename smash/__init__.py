@@ -19,8 +19,7 @@ Goals other than a whole arrangement, and the law itself, are in `smash.problem`
 made of. Nothing is imported before it is asked for.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING
+TYPE_CHECKING = False  # type checkers take it for true; importing `typing` takes longer than all the rest
 
 if TYPE_CHECKING:
     from typing import Any
@@ -111,6 +110,8 @@ _HOMES = {
 if not TYPE_CHECKING:  # a name that is none stays an error for type checkers
 
     def __getattr__(name: str) -> "Any":
+        from importlib import import_module
+
         if name == "__version__":
             from importlib.metadata import version
 

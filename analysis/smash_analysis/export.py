@@ -6,6 +6,7 @@ One row a run, one an incumbent, one a step of a plan; where plans were carried 
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +28,6 @@ FLATTENED = {
 }
 """Small objects: each of their fields becomes the column `object_field`."""
 AS_JSON = ("budgets", "instance_document", "details", "versions")
-IN_OWN_TABLES = ("incumbents", "actions")
 TYPES = {
     **dict.fromkeys(("max_topple", "cost", "lower_bound", "horizon", "verdict_step"), "Int64"),
     **dict.fromkeys(("machine_cores", "machine_usable_cores", "machine_memory_mib"), "Int64"),
@@ -43,11 +43,8 @@ def tidy_runs(records: list[RunRecord]) -> pd.DataFrame:
 
     The columns are the same whatever the records hold.
     """
-    texts: dict[int, str] = {}
-    flat = pd.DataFrame([_flat(record, texts) for record in records])
-    not_plain = (*FLATTENED, *AS_JSON, *IN_OWN_TABLES, "load_average")
-    table = runs_table(records).drop(columns=list(not_plain), errors="ignore")
-    table = pd.concat([table, flat.set_index(table.index)], axis="columns")
+    table = runs_table(records).drop(columns="commit")
+    table = pd.concat([table, pd.DataFrame(_flat(records), index=table.index)], axis="columns")
     table["started"] = pd.to_datetime(table["started"], utc=True, format="ISO8601", errors="coerce")
     further = {name: "string" for name in table.columns if name not in TYPES and _mixed(table[name])}
     return table.astype(TYPES | further)
@@ -55,22 +52,40 @@ def tidy_runs(records: list[RunRecord]) -> pd.DataFrame:
 
 def _mixed(column: pd.Series[Any]) -> bool:
     """Whether a column, of a field that this version does not know, holds texts beside other values."""
-    kinds = {type(value) for value in column if value is not None}
-    return column.dtype == object and len(kinds) > 1
+    return column.dtype == object and len({type(value) for value in column if value is not None}) > 1
 
 
-def _flat(record: RunRecord, texts: dict[int, str]) -> dict[str, Any]:
-    """Return the columns made of a record's nested fields; `texts` keeps those of parts that several records share."""
-    columns: dict[str, Any] = {}
+def _flat(records: Sequence[RunRecord]) -> dict[str, list[Any]]:
+    """Return the columns made of the nested fields."""
+    columns: dict[str, list[Any]] = {}
     for name, parts in FLATTENED.items():
-        inner = getattr(record, name)
-        columns |= {f"{name}_{part}": getattr(inner, part, None) for part in parts}
-    before, after = record.load_average
-    columns |= {"load_before": before, "load_after": after}
+        inner = [getattr(record, name) for record in records]
+        columns |= {f"{name}_{part}": [getattr(value, part, None) for value in inner] for part in parts}
+    for place, name in enumerate(("load_before", "load_after")):
+        columns[name] = [record.load_average[place] for record in records]
+    texts: dict[int, str] = {}  # of parts that several records share
     for name in AS_JSON:
-        value = getattr(record, name)
-        columns[name] = texts.get(id(value)) or texts.setdefault(id(value), json.dumps(value))
+        values = [getattr(record, name) for record in records]
+        columns[name] = [texts.get(id(value)) or texts.setdefault(id(value), json.dumps(value)) for value in values]
     return columns
+
+
+def _tables(results: Path) -> Iterator[tuple[str, pd.DataFrame]]:
+    """Yield every table with its name, one after the other: together they would take much memory.
+
+    All records are read before the first.
+
+    Raises:
+        MalformedFile: as `export`.
+    """
+    records = runs_of(results)
+    carried_out = records_of(results, EPISODES) if EPISODES.path(results).is_file() else None
+    yield "runs", tidy_runs(records)
+    yield "incumbents", incumbents_table(records)
+    yield "steps", steps_table(records)
+    if carried_out is not None:
+        yield "episodes", episodes_table(carried_out)
+        yield "actions", actions_table(carried_out)
 
 
 def export(results: Path, out: Path) -> list[tuple[Path, int]]:
@@ -83,14 +98,9 @@ def export(results: Path, out: Path) -> list[tuple[Path, int]]:
     import pyarrow as pa
     from pyarrow import parquet
 
-    records = runs_of(results)
-    tables = {"runs": tidy_runs(records), "incumbents": incumbents_table(records), "steps": steps_table(records)}
-    if EPISODES.path(results).is_file():
-        carried_out = records_of(results, EPISODES)
-        tables |= {"episodes": episodes_table(carried_out), "actions": actions_table(carried_out)}
-    out.mkdir(parents=True, exist_ok=True)
     files = []
-    for name, table in tables.items():
+    for name, table in _tables(results):
+        out.mkdir(parents=True, exist_ok=True)
         arrow = pa.Table.from_pandas(table, preserve_index=False)
         metadata = {**(arrow.schema.metadata or {}), b"format": EXPORT_VERSION.encode()}
         parquet.write_table(arrow.replace_schema_metadata(metadata), out / f"{name}.parquet")

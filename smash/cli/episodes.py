@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from functools import partial
 from itertools import product
 from pathlib import Path
@@ -57,6 +58,9 @@ SECONDS_AN_EPISODE = 5.0
 @click.option("--replays", is_flag=True, help="Write a 3D replay of each plan's first episode to RESULTS/replays.")
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="At a time.")
 @dask_option
+@click.option(
+    "--redo", is_flag=True, help="Carry out again what was recorded without an episode: its process ended badly."
+)
 @click.option("--dry-run", is_flag=True, help="Say how many episodes are left and how long they take at a guess.")
 def command(
     results: Path,
@@ -71,6 +75,7 @@ def command(
     replays: bool,
     jobs: int,
     dask: str | None,
+    redo: bool,
     dry_run: bool,
 ) -> None:
     """Carry out every plan in RESULTS/runs.jsonl and record each episode as one line of RESULTS/episodes.jsonl.
@@ -103,7 +108,9 @@ def command(
     ]
     if replays:
         (results / REPLAYS).mkdir(exist_ok=True)
-    with stopped_by_signals() as stop, Writer(results, EPISODES) as records:
+    meant = {run.key for run in runs} if redo and not dry_run else set()
+    again = partial(_ended_without, meant)
+    with stopped_by_signals() as stop, Writer(results, EPISODES, again) as records:
         left = sum(run.key not in records.finished for run in runs)
         about = span(left * SECONDS_AN_EPISODE / jobs)
         for line in records.set_aside:
@@ -111,6 +118,9 @@ def command(
         click.echo(
             f"{counted(len(runs), 'episode')}, {left} left, about {about} with {jobs} at a time, by {engine}", err=True
         )
+        if records.redone:
+            lie = f"their records lie in {EPISODES.redone(results).name}"
+            click.echo(f"{counted(records.redone, 'recorded episode')} carried out again; {lie}", err=True)
         bare = sum(run.key in records.finished and not Path(run.replay).exists() for run in runs if run.replay)
         if bare:
             click.echo(f"{bare} recorded earlier have no replay: `smash execute --replay` makes one", err=True)
@@ -123,6 +133,10 @@ def command(
                 task = partial(run_episode, stop=stop) if there.here else run_episode
                 sweep(runs, records, there.executor, task, _Said(left), stop)
     click.echo(f"{counted(len(runs), 'episode')} recorded in {records.path}")
+
+
+def _ended_without(meant: Collection[str], record: EpisodeRecord) -> bool:
+    return record.episode is None and record.key in meant
 
 
 class _Said:

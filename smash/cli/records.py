@@ -58,10 +58,12 @@ def check(results: Path, experiment: Path | None) -> None:
     from smash.experiments.episodes.audit import audit_episodes
     from smash.experiments.sweeps.audit import audit
     from smash.records.files import RUNS
+    from smash.records.sharing import kept_objects
 
     if not RUNS.path(results).is_file() and (results / "scaling.csv").is_file():
         raise MalformedFile(str(results), "its records were not kept, only the table made of them (scaling.csv)")
-    checks = audit(results, partial(_planned, results, experiment)) + audit_episodes(results)
+    with kept_objects():
+        checks = audit(results, partial(_planned, results, experiment)) + audit_episodes(results)
     _show(checks)
     findings = [finding for check in checks for finding in check.findings]
     for finding in findings:
@@ -130,5 +132,9 @@ def export(results: Path, out: Path) -> None:
     require("smash records export", *TABLES, "pyarrow")
     from smash_analysis import export as tables
 
-    for file, rows in tables.export(results, out):
+    from smash.records.sharing import kept_objects
+
+    with kept_objects():
+        files = tables.export(results, out)
+    for file, rows in files:
         click.echo(f"{file}: {rows} rows")

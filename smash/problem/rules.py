@@ -112,18 +112,19 @@ class Law:
     def carry_out(self, state: State, action: Action) -> None:
         """Carry out a legal `action` on `state`, in place; it is not asked whether it is legal."""
         match action:
-            case Pick(block, source):
+            case Pick():
+                block, source = action.block, action.source
                 if source in state.piles:
                     state.piles[source].pop()
                 else:
                     (state.table if source == TABLE else state.carried[source]).remove(block)
                 state.hand = block
                 state.origin = state.place_of(source) if self.instance.costs.travel else None
-            case Place(block, target):
-                if target in state.piles:
-                    state.piles[target].append(block)
+            case Place():
+                if action.target in state.piles:
+                    state.piles[action.target].append(action.block)
                 else:
-                    state.carried[target].add(block)
+                    state.carried[action.target].add(action.block)
                 state.hand = state.origin = None
             case Aggregating():
                 kind_of(action).apply(state, action)

@@ -172,16 +172,18 @@ def believe(judged: Sequence[Judged], further: Iterable[Claim] = ()) -> Believed
         return made
 
     plans, claims = [], [*further]
-    for run in judged:
-        record, problem = run.record, run.problem
-        if problem is None or not run.counts:
-            continue
-        if record.cost is not None:
-            plans.append(Fact(posed_of(problem), record.cost, record.label, where(record)))
-        bound = claimed_bound(record)
-        if bound is not None or record.status == "infeasible":
-            claims.append(Claim(problem, posed_of(problem), bound, record.label, where(record)))
-    found = list(dict.fromkeys(contradictions(plans, claims)))
+    with kept_objects():
+        for run in judged:
+            record, problem = run.record, run.problem
+            if problem is None or not run.counts:
+                continue
+            told = where(record)
+            if record.cost is not None:
+                plans.append(Fact(posed_of(problem), record.cost, record.label, told))
+            bound = claimed_bound(record)
+            if bound is not None or record.status == "infeasible":
+                claims.append(Claim(problem, posed_of(problem), bound, record.label, told))
+        found = list(dict.fromkeys(contradictions(plans, claims)))
     false = {contradiction.claim for contradiction in found}
     open_claims = [claim for claim in claims if claim.bound is None and claim.decided is None and claim not in false]
     unproven = [f"{claim.where}: {claim.who} says that there is no plan" for claim in open_claims]

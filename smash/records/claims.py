@@ -50,11 +50,10 @@ class Posed:
         """Whether every plan of `other` is one of this problem too, at the same cost, but for names of buffers."""
         if self == other:
             return True
-        return (
-            self.kin == other.kin
-            and Counter(dict(other.spare)) <= Counter(dict(self.spare))
-            and self.options.includes(other.options)
-        )
+        if self.kin != other.kin or not self.options.includes(other.options):
+            return False
+        spare = dict(self.spare)
+        return all(count <= spare.get(place, 0) for place, count in other.spare)
 
 
 def claimed_infeasible(problem: Problem) -> bool | None:

@@ -45,7 +45,8 @@ class Record(msgspec.Struct, kw_only=True, frozen=True, dict=True):
         """The fields of its line that this version of the format does not know."""
         line = self.__dict__.get("line")
         names = self.document if line is None else _TOP_LEVEL.decode(line)
-        return {name: self.document[name] for name in names if name not in self.__struct_fields__}
+        unknown = names.keys() - frozenset(self.__struct_fields__)
+        return {name: self.document[name] for name in names if name in unknown} if unknown else {}
 
 
 R = TypeVar("R", bound=Record)

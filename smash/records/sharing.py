@@ -46,7 +46,7 @@ class Sharing(Generic[R]):
         actions = getattr(record, "actions", None)
         if actions is not None:
             known = self._actions
-            force_setattr(record, "actions", [known.setdefault(_key(action), action) for action in actions])
+            force_setattr(record, "actions", [known.setdefault(tuple(action), action) for action in actions])
         return record
 
     def _same(self, name: str, subject: Hashable, value: Any) -> Any:
@@ -57,8 +57,3 @@ class Sharing(Generic[R]):
         if len(known) < MOST_KNOWN:
             known.append(value)
         return value
-
-
-def _key(action: list[Any]) -> tuple[Any, ...]:
-    """Return what equal actions, and no others, have in common: 1 is not True."""
-    return (*action, *map(type, action))

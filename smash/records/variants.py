@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 from smash.problem.actions.registry import FAMILY
 from smash.problem.model import PlanOptions
@@ -11,6 +12,7 @@ FURTHER = tuple(name for name in FAMILY if name != "topple")
 """Aggregating actions that a variant can leave out by `-no-NAME`."""
 
 
+@lru_cache(256)
 def variant_options(variant: str) -> PlanOptions | None:
     """Return what a variant's name allows a plan to do, or None where it is no variant."""
     parts = re.fullmatch(

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 from click.testing import CliRunner
 from pyarrow import parquet
+from smash_analysis.tables.writing import write_csv
 
 from smash.cli import smash
 from smash.problem.errors import Unsupported
@@ -36,6 +37,31 @@ def test_parquet_and_csv_hold_the_same(tables, name, rows):
     assert len(first) == len(second) == rows
     assert list(first.columns) == list(second.columns)
     assert parquet.read_schema(tables / f"{name}.parquet").metadata[b"format"] == b"smash-tables/1"
+
+
+def test_a_csv_file_is_what_pandas_writes_but_for_formulas(tmp_path):
+    table = pd.DataFrame(
+        {
+            "text, quoted": ['say "a"', "b,c", "two\nlines", None, "plain"],
+            "also": pd.Series(["x", None, "", "é", "y"], dtype="string"),
+            "number": [1.5, float("nan"), 1e-7, -3.0, float("inf")],
+            "whole": pd.Series([1, None, -3, 2**53, 0], dtype="Int64"),
+            "truth": pd.Series([True, None, False, True, False], dtype="boolean"),
+            "mixed": [True, 1, "1", None, 0.25],
+            "when": pd.to_datetime(
+                ["2026-01-02T03:04:05.5", None, None, "2025-01-01", None], utc=True, format="ISO8601"
+            ),
+        }
+    )
+    write_csv(table, tmp_path / "table.csv")
+    table.to_csv(tmp_path / "pandas.csv", index=False)
+    assert (tmp_path / "table.csv").read_text() == (tmp_path / "pandas.csv").read_text()
+
+
+def test_a_carriage_return_is_quoted_and_a_formula_marked(tmp_path):
+    write_csv(pd.DataFrame({"=head": ["a\rb", "=1+1", "-3", "+cmd"]}), tmp_path / "table.csv")
+    with (tmp_path / "table.csv").open(newline="") as stream:
+        assert stream.read() == "'=head\n\"a\rb\"\n'=1+1\n-3\n'+cmd\n"
 
 
 def test_a_run_is_one_flat_row(tables):

@@ -69,6 +69,19 @@ def test_trials_over_dask_are_those_made_here(scheduler, tmp_path):
     assert there == here
 
 
+def test_best_known_runs_go_over_dask(scheduler, tmp_path):
+    file = tmp_path / "open.toml"
+    file.write_text(
+        'name = "open"\nsuites = ["open-few-buffers"]\nbudgets = [1]\nvariants = ["topple"]\n'
+        '[[planners]]\nname = "greedy"\n'
+    )
+    ended = smash("sweep", file, "--out", tmp_path / "runs", "--dask", scheduler)
+    assert ended.returncode == 0, ended.stderr
+    assert len(lines(tmp_path / "runs" / "runs.jsonl")) == 12
+    ended = smash("best-known", "update", tmp_path / "runs", "--list", tmp_path / "list")
+    assert (ended.returncode, ended.stdout.split(";")[0]) == (0, "12 improvements"), ended.stderr
+
+
 def test_replays_are_made_here_alone(scheduler, tmp_path):
     pytest.importorskip("pybullet")
     ended = smash("episodes", tmp_path, "--replays", "--dask", scheduler)

@@ -12,6 +12,11 @@ from smash.records.runs import RunRecord
 from smash_analysis.metrics import metric_columns
 from smash_analysis.tables.actions import ACTION_COLUMNS, named
 
+NESTED = (
+    *("incumbents", "actions", "verdict", "budgets", "instance_document", "details", "load_average", "versions"),
+    *("commit", "machine", "without"),
+)
+"""Fields of a run that do not fit into a cell."""
 MOST = 2**53
 """Largest number that every table holds exactly; of a field that is not known a larger one is shown as text."""
 
@@ -23,7 +28,7 @@ def runs_table(records: Sequence[RunRecord]) -> pd.DataFrame:
     of the first and of the best incumbent, NaN without a plan), `solved` (a plan that the law accepts), `proven` (its
     status is optimal), and `metric.NAME` for every registered metric.
     """
-    table = pd.DataFrame([_plain(record) for record in records])
+    table = pd.DataFrame(_plain(records))
     traces = [record.trace for record in records]
     table["first_seconds"] = [trace[0][0] if trace else float("nan") for trace in traces]
     table["best_seconds"] = [trace[-1][0] if trace else float("nan") for trace in traces]
@@ -36,11 +41,17 @@ def runs_table(records: Sequence[RunRecord]) -> pd.DataFrame:
     return table
 
 
-def _plain(record: RunRecord) -> dict[str, object]:
-    """Return the fields of a record that fit into a cell."""
-    fields = {name: getattr(record, name) for name in record.__struct_fields__} | record.further
-    plain = {name: value for name, value in fields.items() if value is None or isinstance(value, str | int | float)}
-    return {name: str(value) if type(value) is int and abs(value) > MOST else value for name, value in plain.items()}
+def _plain(records: Sequence[RunRecord]) -> dict[str, list[Any]]:
+    """Return the columns of the fields that fit into a cell; a field that a record does not have is NaN there."""
+    names = [name for name in RunRecord.__struct_fields__ if name not in NESTED]
+    columns: dict[str, list[Any]] = {name: [getattr(record, name) for record in records] for name in names}
+    for row, record in enumerate(records):
+        for name, value in record.further.items():
+            if value is None or isinstance(value, str | int | float):
+                large = type(value) is int and abs(value) > MOST
+                column = columns.setdefault(name, [float("nan")] * len(records))
+                column[row] = str(value) if large else value
+    return columns
 
 
 def incumbents_table(records: Sequence[RunRecord]) -> pd.DataFrame:
@@ -56,12 +67,12 @@ def incumbents_table(records: Sequence[RunRecord]) -> pd.DataFrame:
 
 def steps_table(records: Sequence[RunRecord]) -> pd.DataFrame:
     """Return one row an action of the best plan: run key, step (from 1), the columns of `tables.actions`."""
-    numbers: dict[tuple[Any, ...], int] = {}  # of each different action; 1 is not True
+    numbers: dict[tuple[str | int, ...], int] = {}  # of each different action
     different: list[dict[str, str | int | None]] = []
     which: list[int] = []
     for record in records:
         for action in record.actions or []:
-            number = numbers.setdefault((*action, *map(type, action)), len(different))
+            number = numbers.setdefault(tuple(action), len(different))
             if number == len(different):
                 different.append(named(action))
             which.append(number)

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Sequence
+from functools import lru_cache
 from typing import Annotated, Any, Literal, cast
 
 import msgspec
@@ -49,17 +51,27 @@ def action_from_list(entry: list[Any], where: str) -> Action:
     Raises:
         MalformedFile: where it is none.
     """
+    action = _action(entry)
+    if action is not None:
+        return action
+    forms = ['["pick", block, source]', '["place", block, target]', *(kind.form for kind in FAMILY.values())]
+    raise MalformedFile(where, f"{json.dumps(entry)} is no action; allowed: {', '.join(forms[:-1])} or {forms[-1]}")
+
+
+def _action(entry: Sequence[Any]) -> Action | None:
     match entry:
         case ["pick", str(block), str(source)]:
             return Pick(block, source)
         case ["place", str(block), str(target)]:
             return Place(block, target)
         case [str(name), *_] if name in FAMILY:
-            action: Action | None = FAMILY[name].read(entry)
-            if action is not None:
-                return action
-    forms = ['["pick", block, source]', '["place", block, target]', *(kind.form for kind in FAMILY.values())]
-    raise MalformedFile(where, f"{json.dumps(entry)} is no action; allowed: {', '.join(forms[:-1])} or {forms[-1]}")
+            action: Action | None = FAMILY[name].read(list(entry))
+            return action
+    return None
+
+
+_known_action = lru_cache(1 << 14)(_action)
+"""The same for entries of texts and whole numbers, each read once: many plans of a sweep have the same."""
 
 
 def action_list(action: Action) -> list[str | int]:
@@ -110,7 +122,10 @@ def plan_from_document(document: Any, where: str = "plan") -> Plan:
         raise MalformedFile(where, "`expected_seconds`: there is no plan; leave it out")
     actions = None
     if file.actions is not None:
-        actions = tuple(action_from_list(a, f"{where}: `actions[{i}]`") for i, a in enumerate(file.actions))
+        actions = tuple(
+            _known_action(tuple(entry)) or action_from_list(entry, f"{where}: `actions[{i}]`")
+            for i, entry in enumerate(file.actions)
+        )
     return Plan(
         instance=file.instance,
         planner=file.planner,
