@@ -158,6 +158,14 @@ engines-full: needs-analysis-execution-mujoco pybullet ## the same on a third of
 	    || exit 1; done
 	$(BIN)/python -m smash_analysis.engines runs/engines-full
 
+ARMS := panda ur5 xarm7
+
+arms: needs-analysis-execution-mujoco ## the same plans carried out by every robot: success, failures, time, what topple saves (about 15 minutes on 2 quiet cores; it can be resumed)
+	$(BIN)/python -m smash sweep experiments/arms.toml --out runs/arms
+	for robot in $(ARMS); do \
+	  $(BIN)/python -m smash episodes runs/arms --policy open --engine mujoco --robot $$robot --jobs 2 || exit 1; done
+	$(BIN)/python -m smash_analysis.arms runs/arms
+
 topple-map: needs-analysis-execution physics ## where toppled blocks land, per cut height and number (minutes)
 	$(BIN)/python -m smash topple-map --jobs 2 --out runs/topple-map
 
