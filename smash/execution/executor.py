@@ -29,7 +29,6 @@ from smash.execution.scene.start import starting_carriers, starting_poses
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.sight import Sight
 from smash.execution.watching import DISTURBED, Watch, part_of, spoilt
-from smash.motion.robot import READY
 from smash.problem.errors import ExecutionFailure, IllegalAction, Unsupported
 from smash.problem.files.plans import action_from_list, action_list
 from smash.problem.model import Action, Instance, PlanOptions, State
@@ -121,7 +120,7 @@ class Executor:
         world = world_of(self.engine)(
             self.chance.scene(),
             self.chance.at_start(poses),
-            READY,
+            self.arm.robot.ready,
             carriers=carriers,
             made=self.chance.made,
             gui=self._gui,

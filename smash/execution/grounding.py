@@ -60,7 +60,7 @@ class Task:
 
     @property
     def end(self) -> Vector | None:
-        """Where the arm will be afterwards [rad], shape (7,), as far as that is known."""
+        """Where the arm will be afterwards [rad], shape (n,), as far as that is known."""
         if self.segments:
             last = [segment for segment in self.segments if isinstance(segment, Move)][-1]
             return last.path.end
@@ -87,7 +87,7 @@ class Grounder:
             actions: A plan.
             law: Of the instance that the plan begins in.
             where: The poses of all its blocks and carriers.
-            joints: Where the arm is [rad], shape (7,).
+            joints: Where the arm is [rad], shape (n,).
 
         Raises:
             IllegalAction: at the first action that the law refuses.
@@ -114,8 +114,8 @@ class Grounder:
             action: The action.
             state: The law's state before it.
             where: The poses that are known then, and where there may be more blocks.
-            begins: Where the arm is then [rad], shape (7,), where that is known.
-            last: Where it was last when that was known [rad], shape (7,).
+            begins: Where the arm is then [rad], shape (n,), where that is known.
+            last: Where it was last when that was known [rad], shape (n,).
             grasp: How it holds the block in the hand.
         """
         if self._among_landed(action, where):
@@ -172,7 +172,7 @@ class Grounder:
             action: The action.
             state: The law's state before it.
             where: The poses that are known.
-            joints: Where the arm is [rad], shape (7,).
+            joints: Where the arm is [rad], shape (n,).
             approach: The way down that a place has promised.
             grasp: How the hand holds the block that is placed.
 

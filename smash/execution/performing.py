@@ -26,7 +26,6 @@ from smash.execution.sight import MEMORY
 from smash.execution.stopwatch import Stopwatch
 from smash.motion.errors import NoIk
 from smash.motion.move import Move
-from smash.motion.robot import MAX_OPENING
 from smash.problem.errors import ExecutionFailure
 from smash.problem.model import TABLE, Aggregating, Pick, Place, State
 from smash.records.episodes import Performed
@@ -106,7 +105,7 @@ class Performer:
         if self.sight.exact:
             return
         self.look()
-        most, before = MAX_OPENING - self.side / 2, inf
+        most, before = self.world.robot.hand.opening - self.side / 2, inf
         while (beside := SURE * self.sight.spread(block)) > OPENINGS[0] and beside < WORTH * before:
             before = beside
             self.world.wait(LOOK_SECONDS)

@@ -22,7 +22,6 @@ from smash.execution.scene.tabletop import Tabletop
 from smash.forecast.model import OutcomeModel
 from smash.motion.move import Move
 from smash.motion.poses import Vector
-from smash.motion.robot import READY
 from smash.problem.actions.topple import Topple
 from smash.problem.errors import ExecutionFailure
 from smash.problem.model import Action, Place, State
@@ -74,7 +73,7 @@ class Rehearsal:
         grounder = Grounder(ArmMotions(self.tabletop, seed))
         slots = self.tabletop.bind(problem.instance)
         where = Geometry(slots, blocks=starting_poses(problem.instance, slots, self.tabletop, generator))
-        tasks = grounder.ground(actions, problem.law, where, READY)
+        tasks = grounder.ground(actions, problem.law, where, grounder.arm.robot.ready)
         return _Run(self, grounder, where, generator).through(problem, tasks)
 
 
@@ -92,7 +91,7 @@ class _Run:
         self._grounder = grounder
         self._where = where
         self._generator = generator
-        self._joints: Vector = READY
+        self._joints: Vector = grounder.arm.robot.ready
         self._grasp: Grasp = CENTRED
 
     def through(self, problem: Problem, tasks: Sequence[Task]) -> list[Rehearsed]:

@@ -1,23 +1,22 @@
 """The fast collision checker: spheres and boxes of the robot against the boxes of a scene, in numba.
 
 `CollisionChecker` binds one robot, one scene, one state of the hand and one margin; a state check takes microseconds.
-Which parts can meet at all was found by sampling the hulls (links 5, 6, 7 and the hand reach links 0 to 2, link 7 and
-the hand reach link 5; neighbours overlap by construction).
+Which parts are asked about each other the robot's file says: neighbours overlap by construction, and others never meet.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from smash.motion import kernel
+from smash.motion.covers import read_cover
 from smash.motion.obstacles import HandState, Scene, in_words
 from smash.motion.poses import Vector
-from smash.motion.robot import panda
+from smash.motion.robot import HAND, Hand, Robot
 
 DEFAULT_MARGIN = 0.010
 """Distance that a motion keeps from the scene [m]: more than the arm's tracking lag."""
@@ -29,58 +28,95 @@ SMALLEST_STEP = 0.001
 With a margin the step is as long as the margin: the robot comes no nearer than half of it between two checks.
 """
 
-BASE_PAIRS = np.array([(far, near) for far in (5, 6, 7) for near in (0, 1, 2)], dtype=np.int64)
-WRIST_PAIRS = np.array([(7, 5)], dtype=np.int64)
-HAND_MEETS = (0, 1, 2)
-BLOCK_MEETS = (0, 1, 2, 3, 4)
-FOREARM = 5
 WRIST_ALLOWANCE = 0.010
-"""The covers of link 5 and of the wrist may overlap by this [m]: the hulls, which are asked last, do not."""
-
-# Hand and finger boxes in the hand's frame [m]: least and greatest corner of their hulls.
-HAND_CORNERS = np.array([[-0.0317, -0.1041, -0.0260], [0.0317, 0.1005, 0.0661]])
-FINGER_CORNERS = np.array([[-0.0106, -0.0002, 0.0584], [0.0106, 0.0265, 0.1123]])
-FINGER_JOINT_Z = 0.0584
-"""From the hand's frame to the fingers' frames, along z [m]."""
-HAND_TO_TOOL = 0.105
-"""From the hand's frame to the tool frame, along z [m]."""
+"""The covers of the forearm and of the wrist may overlap by this [m]: the hulls, which are asked last, do not."""
+NOWHERE = -1e3
+"""Radius of the sphere around a link that has no shape [m]: it is near nothing."""
 
 
-@lru_cache(maxsize=1)
-def arm_model() -> kernel.Arm:
-    """The arm's spheres, from `panda_spheres.csv`."""
-    rows = np.loadtxt(Path(__file__).with_name("panda_spheres.csv"), delimiter=",", skiprows=1)
-    first = np.searchsorted(rows[:, 0], np.arange(9)).astype(np.int64)
-    bounds = np.empty((8, 4))
-    for link in range(8):
-        own = rows[first[link] : first[link + 1], 1:]
-        centre = (own[:, :3].min(axis=0) + own[:, :3].max(axis=0)) / 2
-        bounds[link, :3] = centre
-        bounds[link, 3] = np.max(np.linalg.norm(own[:, :3] - centre, axis=1) + own[:, 3])
-    chain, spheres = np.ascontiguousarray(panda().chain()), np.ascontiguousarray(rows[:, 1:])
-    return kernel.Arm(chain, spheres, first, bounds, BASE_PAIRS, WRIST_PAIRS)
+def links_that_meet(robot: Robot, *, covers: bool) -> list[tuple[int, int]]:
+    """Return the pairs of links that can meet, the outer one first; those that meet beside the wrist last.
+
+    Args:
+        robot: The robot.
+        covers: Leave out those whose covers touch by construction.
+    """
+    left_out = robot.apart | robot.touching if covers else robot.apart
+    links = range(robot.count + 1)
+    pairs = [(far, near) for far in links for near in links[: max(0, far - 1)]]
+    met = [pair for pair in pairs if frozenset(pair) not in left_out]
+    return sorted(met, key=lambda pair: pair[1] >= robot.forearm)
+
+
+def links_that_hand_meets(robot: Robot, *, covers: bool) -> tuple[list[int], list[int]]:
+    """Return the links that the hand can meet, and those that what it holds can.
+
+    Args:
+        robot: The robot.
+        covers: Leave out those whose covers touch by construction.
+    """
+    left_out = robot.apart | robot.touching if covers else robot.apart
+    beyond = list(range(robot.count - 1))
+    return [link for link in beyond if frozenset((HAND, link)) not in left_out], beyond
+
+
+@lru_cache(maxsize=16)
+def arm_model(robot: Robot) -> kernel.Arm:
+    """The arm's spheres, from the table that its file names.
+
+    Raises:
+        MalformedFile: where there is none, or it is of other links.
+    """
+    spheres, first = read_cover(robot)
+    links = robot.count + 1
+    bounds = np.zeros((links, 4))
+    bounds[:, 3] = NOWHERE
+    for link in range(links):
+        own = spheres[first[link] : first[link + 1]]
+        if len(own):
+            centre = (own[:, :3].min(axis=0) + own[:, :3].max(axis=0)) / 2
+            bounds[link, :3] = centre
+            bounds[link, 3] = np.max(np.linalg.norm(own[:, :3] - centre, axis=1) + own[:, 3])
+    pairs = links_that_meet(robot, covers=True)
+    base = [pair for pair in pairs if pair[1] < robot.forearm]
+    wrist = [pair for pair in pairs if pair[1] >= robot.forearm]
+    return kernel.Arm(
+        np.ascontiguousarray(robot.chain()),
+        np.ascontiguousarray(spheres),
+        first,
+        bounds,
+        np.arange(links + 1),
+        _pairs(base),
+        _pairs(wrist),
+        robot.forearm,
+        2 if robot.upright else 1,
+    )
 
 
 class CollisionChecker:
     """Is a configuration, or the straight joint segment between two, free of collisions?
 
     Args:
+        robot: Whose configurations they are.
         scene: What must not be touched; leave out what may be (`Scene.without`).
         hand: Finger opening and carried block.
         margin: Distance to keep from the scene [m].
     """
 
-    def __init__(self, scene: Scene, hand: HandState | None = None, margin: float = DEFAULT_MARGIN) -> None:
+    def __init__(
+        self, robot: Robot, scene: Scene, hand: HandState | None = None, margin: float = DEFAULT_MARGIN
+    ) -> None:
+        self.robot = robot
         self.scene = scene
         self.hand = hand or HandState()
         self.margin = margin
-        boxes = _hand_boxes(self.hand)
-        demands = kernel.Demands(float(margin), WRIST_ALLOWANCE, *_hand_pairs(len(boxes.centres)))
+        boxes = _hand_boxes(robot.hand, self.hand)
+        demands = kernel.Demands(float(margin), WRIST_ALLOWANCE, *_hand_pairs(robot, len(boxes.centres)))
         around = kernel.Boxes(scene.centres, scene.half_extents, scene.rotations)
-        self._setting = (arm_model(), boxes, around, demands)
+        self._setting = (arm_model(robot), boxes, around, demands)
 
     def slack(self, joints: Vector) -> float:
-        """How much nearer anything may come at `joints` [rad], shape (7,), before it is refused [m]; free above 0."""
+        """How much nearer anything may come at `joints` [rad], shape (n,), before it is refused [m]; free above 0."""
         return float(kernel.state_slack(joints, *self._setting))
 
     def free(self, joints: Vector) -> bool:
@@ -99,38 +135,43 @@ class CollisionChecker:
         return float(kernel.motion_free(begin, end, smallest, *self._setting))
 
     def path_free(self, waypoints: NDArray[np.float64]) -> bool:
-        """Whether all segments between consecutive waypoints [rad], shape (W, 7), are free."""
+        """Whether all segments between consecutive waypoints [rad], shape (W, n), are free."""
         return all(self.segment_free(begin, end) for begin, end in pairwise(waypoints))
 
     def blockers(self, joints: Vector) -> tuple[str, ...]:
         """What is too close at `joints`: names of blocks, "the table", "the robot itself"; empty where free."""
-        if not CollisionChecker(self.scene.none(), self.hand, self.margin).free(joints):
+        if not CollisionChecker(self.robot, self.scene.none(), self.hand, self.margin).free(joints):
             return ("the robot itself",)
         close = []
         for index, name in enumerate(self.scene.names):
-            if not CollisionChecker(self.scene.only(index), self.hand, self.margin).free(joints):
+            if not CollisionChecker(self.robot, self.scene.only(index), self.hand, self.margin).free(joints):
                 close.append(in_words(name))
         return tuple(dict.fromkeys(close))
 
 
-def _hand_boxes(hand: HandState) -> kernel.Boxes:
-    """Hand, left and right finger, and what they hold, as boxes in the tool frame."""
-    left = FINGER_CORNERS + np.array([0.0, hand.opening, 0.0])
+def _hand_boxes(hand: Hand, state: HandState) -> kernel.Boxes:
+    """Palm, left and right finger, and what they hold, as boxes in the tool frame."""
+    left = hand.finger + np.array([0.0, state.opening, 0.0])
     right = left * np.array([1.0, -1.0, 1.0])
-    corners = np.stack([HAND_CORNERS, left, right])
-    centres = corners.mean(axis=1) - np.array([0.0, 0.0, HAND_TO_TOOL])
+    corners = np.stack([hand.palm, left, right])
+    centres = corners.mean(axis=1) - hand.tool
     half = np.abs(corners[:, 1] - corners[:, 0]) / 2
     rotations = np.tile(np.eye(3), (3, 1, 1))
-    if hand.attached is not None:
-        centres = np.vstack([centres, hand.attached.translations])
-        half = np.vstack([half, hand.attached.half_extents])
-        rotations = np.concatenate([rotations, hand.attached.rotations])
+    if state.attached is not None:
+        centres = np.vstack([centres, state.attached.translations])
+        half = np.vstack([half, state.attached.half_extents])
+        rotations = np.concatenate([rotations, state.attached.rotations])
     return kernel.Boxes(*(np.ascontiguousarray(array) for array in (centres, half, rotations)))
 
 
-def _hand_pairs(boxes: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _hand_pairs(robot: Robot, boxes: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Pairs of hand box and link that can meet: those near the base, and those with the forearm."""
-    base = [(box, link) for box in range(3) for link in HAND_MEETS]
-    base += [(box, link) for box in range(3, boxes) for link in BLOCK_MEETS]
-    wrist = [(box, FOREARM) for box in range(boxes)]
-    return np.array(base, dtype=np.int64), np.array(wrist, dtype=np.int64)
+    own, held = links_that_hand_meets(robot, covers=True)
+    pairs = [(box, link) for box in range(boxes) for link in (own if box < 3 else held)]
+    base = [pair for pair in pairs if pair[1] < robot.forearm]
+    wrist = [pair for pair in pairs if pair[1] >= robot.forearm]
+    return _pairs(base), _pairs(wrist)
+
+
+def _pairs(pairs: list[tuple[int, int]]) -> NDArray[np.int64]:
+    return np.array(pairs, dtype=np.int64).reshape(-1, 2)

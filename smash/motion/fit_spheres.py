@@ -1,23 +1,20 @@
-"""Cover the Panda's link hulls with spheres, once: `python -m smash.motion.fit_spheres` writes `panda_spheres.csv`.
+"""Cover the hulls of a robot's links with spheres, once: `smash robot FILE --fit` writes the table that its file names.
 
-Greedy set cover: candidates are spheres centred inside a hull that reach `PADDING` beyond its nearest face; they are
-taken by how many of the still uncovered samples (hull surface, corners, inside) they cover. So every point of a hull
-lies in a sphere, and no sphere stands out by more than the padding: the checker errs on the safe side.
+Greedy set cover: candidates are spheres centred inside a hull that reach `Robot.padding` beyond its nearest face; they
+are taken by how many of the still uncovered samples (hull surface, corners, inside) they cover. So every point of a
+hull lies in a sphere, and no sphere stands out by more than the padding: the checker errs on the safe side.
 """
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from smash.motion.covers import HEADER
 from smash.motion.hulls import link_vertices
+from smash.motion.robot import Robot
 
-TABLE = Path(__file__).with_name("panda_spheres.csv")
-PADDING = (0.025, 0.020, 0.018, 0.016, 0.016, 0.012, 0.010, 0.010)
-"""How far the spheres of links 0 to 7 may stand out [m]: finer towards the hand, which works close to blocks."""
 SURFACE_SAMPLES = 6000
 INSIDE_SAMPLES = 1500
 CANDIDATES = 8000
@@ -60,14 +57,11 @@ def cover(vertices: NDArray[np.float64], padding: float, seed: int = 0) -> NDArr
     return np.column_stack([centres[chosen], depth[chosen] + padding])
 
 
-def main() -> None:
-    """Write the table: link, x, y, z, radius [m] in the link's frame."""
-    lines = ["link,x,y,z,radius"]
-    for link, padding in enumerate(PADDING):
-        for x, y, z, radius in cover(link_vertices(link), padding):
+def fitted(robot: Robot) -> str:
+    """Return the table of spheres of a robot: link, x, y, z, radius [m] in the link's frame."""
+    lines = [HEADER]
+    for link, body in robot.bodies.items():
+        vertices = link_vertices(robot, link)
+        for x, y, z, radius in cover(vertices, robot.padding[body]) if len(vertices) else ():
             lines.append(f"{link},{x:.4f},{y:.4f},{z:.4f},{radius:.4f}")
-    TABLE.write_text("\n".join(lines) + "\n", encoding="ascii")
-
-
-if __name__ == "__main__":
-    main()
+    return "\n".join(lines) + "\n"

@@ -29,31 +29,33 @@ def compiled(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, 
 FAR = 0.1
 """Distances to the scene and the base above this are all reported as this [m]: far enough for any step."""
 WRIST_FAR = 0.03
-"""The same for the distance of hand and forearm, which two joints change alone [m]."""
-LINKS = 8
-LINK_ROWS = np.arange(LINKS + 1)
-FIRST_MOVING_LINK = 2
-"""Links 0 and 1 stand over their place on the table: they are not checked against the scene."""
+"""The same for the distance of hand and forearm, which the wrist's joints change alone [m]."""
 
 
 class Arm(NamedTuple):
-    """The seven links and the base.
+    """The base, link 0, and the links that n joints move.
 
     Attributes:
-        chain: Fixed transforms, (8, 3, 4), as of `Panda.chain`.
+        chain: Fixed transforms, (n + 1, 3, 4), as of `Robot.chain`.
         spheres: Centre and radius in the link's frame [m], (S, 4).
-        first: Link i owns the spheres first[i] to first[i + 1], (9,).
-        bounds: One sphere around everything of a link [m], (8, 4).
-        base_pairs: Links of the wrist and of the base that can meet, (P, 2).
-        wrist_pairs: Links of the wrist that can meet, (P, 2).
+        first: Link i owns the spheres first[i] to first[i + 1], (n + 2,).
+        bounds: One sphere around everything of a link [m], (n + 1, 4).
+        rows: 0 to n + 1: link i owns the bound i.
+        base_pairs: Links that can meet, of which one lies before the forearm, (P, 2).
+        wrist_pairs: Links that can meet, none of them before the forearm, (P, 2).
+        forearm: The last link before the wrist.
+        lowest: The first link that is checked against the scene: those before it stand over their place on the table.
     """
 
     chain: Array
     spheres: Array
     first: IntArray
     bounds: Array
+    rows: IntArray
     base_pairs: IntArray
     wrist_pairs: IntArray
+    forearm: int
+    lowest: int
 
 
 class Boxes(NamedTuple):
@@ -74,9 +76,9 @@ class Body(NamedTuple):
     """The robot at one configuration, in the world.
 
     Attributes:
-        frames: Of links 0 to 7 and of the tool, (9, 3, 4).
+        frames: Of links 0 to n and of the tool, (n + 2, 3, 4).
         spheres: Centre and radius [m], (S, 4).
-        bounds: One sphere around each link [m], (8, 4).
+        bounds: One sphere around each link [m], (n + 1, 4).
         hand: Boxes of hand, fingers and carried block.
     """
 
@@ -104,13 +106,14 @@ class Demands(NamedTuple):
 
 @compiled
 def link_frames(chain: Array, joints: Array) -> Array:
-    """Frames of links 0 to 7 and of the tool in the world, shape (9, 3, 4)."""
-    frames = np.zeros((9, 3, 4))
+    """Frames of links 0 to n and of the tool in the world, shape (n + 2, 3, 4)."""
+    count = joints.shape[0]
+    frames = np.zeros((count + 2, 3, 4))
     for row in range(3):
         frames[0, row, row] = 1.0
-    for index in range(8):
+    for index in range(count + 1):
         cosine, sine = 1.0, 0.0
-        if index < 7:
+        if index < count:
             cosine, sine = math.cos(joints[index]), math.sin(joints[index])
         for row in range(3):
             a, b, c, d = frames[index, row]
@@ -126,9 +129,9 @@ def link_frames(chain: Array, joints: Array) -> Array:
 
 @compiled
 def moved_spheres(frames: Array, spheres: Array, first: IntArray) -> Array:
-    """Spheres in the world, (S, 4), from the frames of links 0 to 7; link i owns first[i] to first[i + 1]."""
+    """Spheres in the world, (S, 4), from the frames of the links; link i owns first[i] to first[i + 1]."""
     world = np.empty((spheres.shape[0], 4))
-    for link in range(LINKS):
+    for link in range(first.shape[0] - 1):
         a, b, c, d = frames[link, 0, 0], frames[link, 0, 1], frames[link, 0, 2], frames[link, 0, 3]
         e, f, g, h = frames[link, 1, 0], frames[link, 1, 1], frames[link, 1, 2], frames[link, 1, 3]
         i, j, k, m = frames[link, 2, 0], frames[link, 2, 1], frames[link, 2, 2], frames[link, 2, 3]
@@ -242,10 +245,10 @@ def radius_of(half: Array, box: int) -> float:
 
 @compiled
 def posture(arm: Arm, hand: Boxes, joints: Array) -> Body:
-    """The robot at a configuration [rad], (7,), with the hand's boxes given in the tool frame."""
+    """The robot at a configuration [rad], (n,), with the hand's boxes given in the tool frame."""
     frames = link_frames(arm.chain, joints)
     spheres = moved_spheres(frames, arm.spheres, arm.first)
-    return Body(frames, spheres, moved_spheres(frames, arm.bounds, LINK_ROWS), place_boxes(frames[8], hand))
+    return Body(frames, spheres, moved_spheres(frames, arm.bounds, arm.rows), place_boxes(frames[-1], hand))
 
 
 @compiled
@@ -295,7 +298,7 @@ def scene_distance(arm: Arm, body: Body, scene: Boxes, known: float) -> float:
                 least = min(least, apart)
     # The hand first: it is mostly the nearest, and a small distance known early spares the links' spheres.
     for box in range(centres.shape[0]):
-        for link in range(FIRST_MOVING_LINK, LINKS):
+        for link in range(arm.lowest, bounds.shape[0]):
             least = link_to_box(spheres, bounds, first, link, centres, half, axes, box, least)
     return least
 
@@ -348,7 +351,7 @@ def slacks(arm: Arm, body: Body, scene: Boxes, demands: Demands) -> tuple[float,
 
     Returns:
         The slack to the scene and to the arm's base, which all joints change, and that between the forearm and the
-        hand, which joints 6 and 7 change alone. Once one is 0 or less the other may be left unknown.
+        hand, which the wrist's joints change alone. Once one is 0 or less the other may be left unknown.
     """
     wrist = demands.allowance + self_distance(arm, body, arm.wrist_pairs, demands.hand_wrist_pairs, WRIST_FAR)
     if wrist <= 0.0:
@@ -362,24 +365,25 @@ def slacks(arm: Arm, body: Body, scene: Boxes, demands: Demands) -> tuple[float,
 
 @compiled
 def state_slack(joints: Array, arm: Arm, hand: Boxes, scene: Boxes, demands: Demands) -> float:
-    """The lesser of the `slacks` of a configuration [rad], (7,): free above 0 [m]."""
+    """The lesser of the `slacks` of a configuration [rad], (n,): free above 0 [m]."""
     outside, wrist = slacks(arm, posture(arm, hand, joints), scene, demands)
     return min(outside, wrist)
 
 
 @compiled
 def radii(body: Body) -> Array:
-    """How far the outermost point that a joint moves is from the joint's axis now, at most [m], shape (7,)."""
-    reach = np.zeros(7)
+    """How far the outermost point that a joint moves is from the joint's axis now, at most [m], shape (n,)."""
+    links = body.bounds.shape[0]
+    reach = np.zeros(links - 1)
     hand = body.hand
-    for joint in range(7):
+    for joint in range(links - 1):
         axis = body.frames[joint + 1]
-        for index in range(joint + 1, LINKS + hand.centres.shape[0]):
-            if index < LINKS:
+        for index in range(joint + 1, links + hand.centres.shape[0]):
+            if index < links:
                 x, y, z, size = body.bounds[index]
             else:
-                x, y, z = hand.centres[index - LINKS]
-                size = radius_of(hand.half, index - LINKS)
+                x, y, z = hand.centres[index - links]
+                size = radius_of(hand.half, index - links)
             dx, dy, dz = x - axis[0, 3], y - axis[1, 3], z - axis[2, 3]
             along = dx * axis[0, 2] + dy * axis[1, 2] + dz * axis[2, 2]
             across = math.sqrt(max(0.0, dx * dx + dy * dy + dz * dz - along * along))
@@ -409,7 +413,7 @@ def motion_free(
             return 1.0
         reach = radii(body)
         travel = np.sum(change * reach)
-        wrist_travel = change[5] * reach[5] + change[6] * reach[6]
+        wrist_travel = np.sum(change[arm.forearm :] * reach[arm.forearm :])
         outside, wrist = max(outside, smallest), max(wrist, smallest)
         step = min(outside / (travel + outside * total), wrist / (wrist_travel + wrist * total))
         done = min(1.0, done + step)

@@ -22,7 +22,7 @@ from smash.motion.obstacles import BodyName, HandState, Scene
 from smash.motion.paths import Path
 from smash.motion.planner import MotionPlanner
 from smash.motion.poses import ToolPose, Vector
-from smash.motion.robot import panda
+from smash.motion.robot import Robot
 from smash.motion.timing import time_gently
 from smash.problem.errors import ExecutionFailure
 
@@ -30,7 +30,6 @@ Piece = tuple[Path, float]
 """A path and the distance from other things that it keeps [m]."""
 
 GRAVITY = 9.81
-FIRST_JOINT = np.eye(7)[0]
 SHORTEST = 0.0005
 """Lines shorter than this are left out [m]."""
 FRICTION_SHARE = 0.4
@@ -74,7 +73,7 @@ def level_way(
 
     Args:
         planner: Plans the pieces.
-        start: Where the arm is [rad], shape (7,).
+        start: Where the arm is [rad], shape (n,).
         target: Where the tool shall be; its orientation is the present one turned about the vertical.
         scene: What must not be touched; what is carried is left out.
         hand: Fingers and what they hold.
@@ -86,7 +85,7 @@ def level_way(
     """
     search = _Search(planner, target, scene, hand)
     pieces = search.way(start)
-    return [_gentle(path, hand, ignored, margin, manner) for path, margin in pieces]
+    return [_gentle(planner.robot, path, hand, ignored, margin, manner) for path, margin in pieces]
 
 
 class _Search:
@@ -94,6 +93,7 @@ class _Search:
 
     def __init__(self, planner: MotionPlanner, target: ToolPose, scene: Scene, hand: HandState) -> None:
         self._planner = planner
+        self._robot = planner.robot
         self._target = target
         self._scene = scene
         self._hand = hand
@@ -104,7 +104,7 @@ class _Search:
         Raises:
             NoIk, NoMotion: where none is.
         """
-        tool, target = panda().forward(start), self._target
+        tool, target = self._robot.forward(start), self._target
         turns = self._turns(start, tool)
         x, y, z = (float(value) for value in tool.position)
         bearing = atan2(y, x)
@@ -139,9 +139,9 @@ class _Search:
         relative = self._target.rotation @ tool.rotation.T
         turn = atan2(float(relative[1, 0]), float(relative[0, 0]))
         both = sorted((turn - 2 * pi, turn, turn + 2 * pi), key=abs)
-        checker = CollisionChecker(self._scene, self._hand, CONTACT_MARGIN)
+        checker = CollisionChecker(self._robot, self._scene, self._hand, CONTACT_MARGIN)
         for angle in list(both):
-            there = descend(self._target, start + angle * FIRST_JOINT, panda())
+            there = descend(self._robot, self._target, start + angle * self._robot.first_joint)
             if there is None or not checker.free(there):
                 both.remove(angle)
         if not both:
@@ -155,7 +155,7 @@ class _Search:
             NoIk, NoMotion: at the first that is not possible.
         """
         x, y, z = (float(value) for value in self._target.position)
-        around = self._planner.straight(now, now + turn * FIRST_JOINT, self._scene, hand=self._hand)
+        around = self._planner.straight(now, now + turn * self._robot.first_joint, self._scene, hand=self._hand)
         across = self._line(around.end, (x, y, height))
         down = self._line(_end(across, around.end), (x, y, z), CONTACT_MARGIN)
         return [(around, DEFAULT_MARGIN), *across, *down]
@@ -166,7 +166,7 @@ class _Search:
         Raises:
             NoIk, NoMotion: where it is not possible.
         """
-        offset = np.asarray(point) - panda().forward(now).position
+        offset = np.asarray(point) - self._robot.forward(now).position
         if np.linalg.norm(offset) < SHORTEST:
             return []
         return [(self._planner.line(now, offset, self._scene, hand=self._hand, margin=margin), margin)]
@@ -176,18 +176,20 @@ def _end(pieces: Sequence[Piece], start: Vector) -> Vector:
     return pieces[-1][0].end if pieces else start
 
 
-def _gentle(path: Path, hand: HandState, ignored: frozenset[BodyName], margin: float, manner: Gentleness) -> Move:
+def _gentle(
+    robot: Robot, path: Path, hand: HandState, ignored: frozenset[BodyName], margin: float, manner: Gentleness
+) -> Move:
     """The timed motion; on an arc half of the acceleration bends the way."""
-    ends = panda().forward(path.start).position, panda().forward(path.end).position
+    ends = robot.forward(path.start).position, robot.forward(path.end).position
     if path.kind == "straight":
         radius = hypot(*ends[0][:2]) + _reach(hand)
         length = max(radius * abs(float(path.end[0] - path.start[0])), SHORTEST)
         along = manner.acceleration / sqrt(2)
-        trajectory = time_gently(path, length, min(manner.speed, sqrt(along * radius)), along)
+        trajectory = time_gently(robot, path, length, min(manner.speed, sqrt(along * radius)), along)
     else:
         length = float(np.linalg.norm(ends[1] - ends[0]))
-        trajectory = time_gently(path, length, manner.speed, manner.acceleration)
-    return Move(path, trajectory, hand, ignored, margin)
+        trajectory = time_gently(robot, path, length, manner.speed, manner.acceleration)
+    return Move(robot, path, trajectory, hand, ignored, margin)
 
 
 def _reach(hand: HandState) -> float:

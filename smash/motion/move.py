@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from smash.motion.collision import CollisionChecker
 from smash.motion.obstacles import BodyName, HandState, Scene
 from smash.motion.paths import Path
+from smash.motion.robot import Robot
 from smash.motion.timing import Trajectory
 
 
@@ -15,6 +16,7 @@ class Move:
     """One motion of the arm.
 
     Attributes:
+        robot: Whose.
         path: Where.
         trajectory: When.
         hand: Fingers and what they hold meanwhile.
@@ -22,6 +24,7 @@ class Move:
         margin: Distance that it was planned to keep [m].
     """
 
+    robot: Robot
     path: Path
     trajectory: Trajectory
     hand: HandState
@@ -35,5 +38,5 @@ class Move:
 
     def free(self, scene: Scene, allowance: float) -> bool:
         """Whether the motion keeps its margin, less `allowance` [m], in another scene."""
-        checker = CollisionChecker(scene.without(self.ignored), self.hand, self.margin - allowance)
+        checker = CollisionChecker(self.robot, scene.without(self.ignored), self.hand, self.margin - allowance)
         return checker.path_free(self.path.waypoints)

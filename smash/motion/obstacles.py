@@ -142,7 +142,7 @@ class HandState:
     """What is fixed at the end of the arm during one motion.
 
     Attributes:
-        opening: Travel of each finger from the middle [m], 0 (closed) to 0.04.
+        opening: Travel of each finger from the middle [m], 0 (closed) to the hand's own `opening`.
         attached: What the hand holds, or nothing.
     """
 

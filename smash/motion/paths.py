@@ -26,7 +26,7 @@ class Path:
     """A polyline in joint space, collision-free when it comes from the planner.
 
     Attributes:
-        waypoints: [rad], shape (W, 7), W >= 2; corners of tree paths are rounded already.
+        waypoints: [rad], shape (W, n), W >= 2; corners of tree paths are rounded already.
         kind: How it was found: `straight` joint segment, `tree` (RRTConnect), `line` (the tool on a straight line).
     """
 
@@ -35,12 +35,12 @@ class Path:
 
     @property
     def start(self) -> Vector:
-        """First configuration [rad], shape (7,)."""
+        """First configuration [rad], shape (n,)."""
         return np.asarray(self.waypoints[0])
 
     @property
     def end(self) -> Vector:
-        """Last configuration [rad], shape (7,)."""
+        """Last configuration [rad], shape (n,)."""
         return np.asarray(self.waypoints[-1])
 
     @property
@@ -54,7 +54,7 @@ class Path:
 
 
 def densify(waypoints: Waypoints, step: float) -> Waypoints:
-    """The same joint polyline with no joint moving more than `step` [rad] between rows: (W, 7) to (T, 7)."""
+    """The same joint polyline with no joint moving more than `step` [rad] between rows: (W, n) to (T, n)."""
     pieces = [waypoints[:1]]
     for begin, end in pairwise(waypoints):
         count = max(1, int(np.ceil(float(np.max(np.abs(end - begin))) / step)))
@@ -70,7 +70,7 @@ def round_corners(waypoints: Waypoints, free: Callable[[Waypoints], bool]) -> Wa
     it, and the corner stays where none is.
 
     Args:
-        waypoints: [rad], shape (W, 7).
+        waypoints: [rad], shape (W, n).
         free: Whether a piece of polyline is free of collisions.
     """
     if len(waypoints) < 3:

@@ -2,7 +2,7 @@
 
 A `MotionPlanner` tries the straight joint segment first, then a tree. `line` keeps the tool on a straight line
 (approach, lift, topple push). Whatever is returned has been checked a second time, against the hulls of the robot's
-meshes. Configurations are in rad, shape (7,); lengths in m.
+meshes. Configurations are in rad, shape (n,); lengths in m.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from smash.motion.kinematics import along_line
 from smash.motion.obstacles import HandState, Scene
 from smash.motion.paths import Path, densify, round_corners
 from smash.motion.poses import Vector
-from smash.motion.robot import within_limits
+from smash.motion.robot import Robot
 
 LINE_STEP = 0.01
 """Tool poses along a line are this far apart [m]."""
@@ -32,17 +32,19 @@ SEARCHES = 2
 
 
 class MotionPlanner:
-    """Plans motions of the Panda among boxes.
+    """Plans motions of a robot among boxes.
 
     The same arguments and seed give the same path, bit for bit, whatever was planned before.
 
     Args:
+        robot: The robot.
         margin: Distance to keep from the scene where no contact is meant [m].
         seed: Of all random choices, 0 or more.
         verify: Check every path against the hulls before it is returned.
     """
 
-    def __init__(self, *, margin: float = DEFAULT_MARGIN, seed: int = 0, verify: bool = True) -> None:
+    def __init__(self, robot: Robot, *, margin: float = DEFAULT_MARGIN, seed: int = 0, verify: bool = True) -> None:
+        self.robot = robot
         self.margin = margin
         self.seed = seed
         self.verify = verify
@@ -59,8 +61,8 @@ class MotionPlanner:
         """A free path from `start` to one of `goals`: the nearest straight segment, else a tree's path.
 
         Args:
-            start: [rad], shape (7,).
-            goals: [rad], shape (7,) or (G, 7).
+            start: [rad], shape (n,).
+            goals: [rad], shape (n,) or (G, n).
             scene: What must not be touched; leave out what may be (`scene.without(names)`).
             hand: Finger opening and carried block; closed and empty by default.
             margin: Distance to keep [m], the planner's own by default.
@@ -69,7 +71,7 @@ class MotionPlanner:
             NoMotion: Start or all goals are in collision, or no path was found.
         """
         held = hand or HandState()
-        checker = CollisionChecker(scene, held, self.margin if margin is None else margin)
+        checker = CollisionChecker(self.robot, scene, held, self.margin if margin is None else margin)
         begin = np.ascontiguousarray(start, dtype=np.float64)
         self._require_free(begin, checker, "the start")
         hulls = self._hulls(scene, held)
@@ -84,15 +86,15 @@ class MotionPlanner:
     def straight(
         self, start: Vector, end: Vector, scene: Scene, *, hand: HandState | None = None, margin: float | None = None
     ) -> Path:
-        """The straight joint segment between two configurations [rad], shape (7,), and nothing else.
+        """The straight joint segment between two configurations [rad], shape (n,), and nothing else.
 
         Raises:
             NoMotion: Something is in the way, or a joint limit.
         """
         held = hand or HandState()
-        checker = CollisionChecker(scene, held, self.margin if margin is None else margin)
+        checker = CollisionChecker(self.robot, scene, held, self.margin if margin is None else margin)
         waypoints = densify(np.stack([start, end]), HULL_STEP)
-        if not within_limits(waypoints):
+        if not self.robot.within_limits(waypoints):
             raise NoMotion("the way is beyond the joint limits")
         if not checker.segment_free(waypoints[0], waypoints[-1]):
             raise NoMotion(f"the way is blocked by {_blocked_by(waypoints, checker)}")
@@ -114,7 +116,7 @@ class MotionPlanner:
         """Move the tool on a straight line, its orientation kept.
 
         Args:
-            start: Where the line begins [rad], shape (7,).
+            start: Where the line begins [rad], shape (n,).
             displacement: From there, in the world [m], shape (3,).
             scene: What must not be touched.
             hand: Finger opening and carried block.
@@ -128,12 +130,12 @@ class MotionPlanner:
         held = hand or HandState()
         offset = np.asarray(displacement, dtype=np.float64)
         count = max(1, int(np.ceil(float(np.linalg.norm(offset)) / LINE_STEP)))
-        rows = along_line(start, [offset * step / count for step in range(1, count + 1)])
+        rows = along_line(self.robot, start, [offset * step / count for step in range(1, count + 1)])
         if rows is None:
             raise NoIk(f"the tool cannot follow the line by {_say(offset)} from where it is")
         waypoints = np.stack([np.asarray(start, dtype=np.float64), *rows])
         for state in (held,) if back is None else (held, back):
-            checker = CollisionChecker(scene, state, margin)
+            checker = CollisionChecker(self.robot, scene, state, margin)
             if not checker.path_free(waypoints):
                 raise NoMotion(f"a line by {_say(offset)} is blocked by {_blocked_by(waypoints, checker)}")
         # Hand and fingers are boxes to both checkers: the hulls add what the arm does, which is the same both ways.
@@ -163,7 +165,7 @@ class MotionPlanner:
         self, goals: NDArray[np.float64], begin: Vector, checker: CollisionChecker, hulls: HullChecker | None
     ) -> NDArray[np.float64]:
         """The goals that are free, nearest to `begin` first."""
-        free = [goal for goal in goals if within_limits(goal) and checker.free(goal)]
+        free = [goal for goal in goals if self.robot.within_limits(goal) and checker.free(goal)]
         if not free:
             self._require_free(np.ascontiguousarray(goals[0]), checker, "the goal")
         touching = [self._contact(goal[None], hulls) for goal in free]
@@ -174,14 +176,14 @@ class MotionPlanner:
 
     @staticmethod
     def _require_free(joints: Vector, checker: CollisionChecker, what: str) -> None:
-        if not within_limits(joints):
+        if not checker.robot.within_limits(joints):
             raise NoMotion(f"{what} is beyond the joint limits")
         if not checker.free(joints):
             close = ", ".join(checker.blockers(joints)) or "something"
             raise NoMotion(f"{what} is closer than {checker.margin * 1000:.0f} mm to {close}")
 
     def _hulls(self, scene: Scene, hand: HandState) -> HullChecker | None:
-        return HullChecker(scene, hand, HULL_TOLERANCE) if self.verify else None
+        return HullChecker(self.robot, scene, hand, HULL_TOLERANCE) if self.verify else None
 
     @staticmethod
     def _contact(waypoints: NDArray[np.float64], hulls: HullChecker | None) -> Contact | None:
@@ -189,7 +191,7 @@ class MotionPlanner:
 
 
 def _blocked_by(waypoints: NDArray[np.float64], checker: CollisionChecker) -> str:
-    """What stops the first blocked segment of a polyline [rad], shape (W, 7)."""
+    """What stops the first blocked segment of a polyline [rad], shape (W, n)."""
     for begin, end in pairwise(waypoints):
         done = checker.segment_reach(begin, end)
         if done < 1.0:

@@ -16,7 +16,6 @@ from ompl import base, geometric, util
 
 from smash.motion.collision import CollisionChecker
 from smash.motion.poses import Vector
-from smash.motion.robot import JOINTS, LOWER, UPPER
 
 ITERATIONS = 6000
 """Samples after which a search gives up."""
@@ -35,7 +34,7 @@ class _Validity(base.StateValidityChecker):  # type: ignore[misc]
         self._checker = checker
 
     def isValid(self, state: Any) -> bool:  # noqa: N802 (OMPL's name)
-        return self._checker.free(_joints(state))
+        return self._checker.free(_joints(state, self._checker))
 
 
 class _Motion(base.MotionValidator):  # type: ignore[misc]
@@ -46,7 +45,7 @@ class _Motion(base.MotionValidator):  # type: ignore[misc]
         self._checker = checker
 
     def checkMotion(self, begin: Any, end: Any) -> bool:  # noqa: N802 (OMPL's name)
-        return self._checker.segment_free(_joints(begin), _joints(end))
+        return self._checker.segment_free(_joints(begin, self._checker), _joints(end, self._checker))
 
 
 def connect(
@@ -55,20 +54,21 @@ def connect(
     """A collision-free polyline from `start` to one of `goals`, simplified, or None where the search gave up.
 
     Args:
-        start: A free configuration [rad], shape (7,).
-        goals: Free configurations [rad], shape (G, 7).
+        start: A free configuration [rad], shape (n,).
+        goals: Free configurations [rad], shape (G, n).
         checker: Decides what is free.
         seed: At least 1.
 
     Returns:
-        Waypoints [rad], shape (W, 7).
+        Waypoints [rad], shape (W, n).
     """
     util.RNG.setSeed(seed)
-    space = base.RealVectorStateSpace(JOINTS)
-    bounds = base.RealVectorBounds(JOINTS)
-    for joint in range(JOINTS):
-        bounds.setLow(joint, float(LOWER[joint]))
-        bounds.setHigh(joint, float(UPPER[joint]))
+    robot = checker.robot
+    space = base.RealVectorStateSpace(robot.count)
+    bounds = base.RealVectorBounds(robot.count)
+    for joint in range(robot.count):
+        bounds.setLow(joint, float(robot.lower[joint]))
+        bounds.setHigh(joint, float(robot.upper[joint]))
     space.setBounds(bounds)
     information = base.SpaceInformation(space)
     # OMPL keeps no reference to objects made in Python: these two must outlive the search.
@@ -96,7 +96,7 @@ def connect(
     simplifier.reduceVertices(path, SHORTCUT_TRIES, SHORTCUT_TRIES)
     simplifier.partialShortcutPath(path, SHORTCUT_TRIES, SHORTCUT_TRIES // 2)
     simplifier.reduceVertices(path, SHORTCUT_TRIES, SHORTCUT_TRIES)
-    return np.array([_joints(state) for state in path.getStates()])
+    return np.array([_joints(state, checker) for state in path.getStates()])
 
 
 class _Countdown:
@@ -110,12 +110,12 @@ class _Countdown:
         return self._left < 0
 
 
-def _joints(state: Any) -> NDArray[np.float64]:
-    return np.array([state[joint] for joint in range(JOINTS)])
+def _joints(state: Any, checker: CollisionChecker) -> NDArray[np.float64]:
+    return np.array([state[joint] for joint in range(checker.robot.count)])
 
 
 def _state(space: Any, joints: Vector) -> Any:
     state = space.allocState()
-    for joint in range(JOINTS):
-        state[joint] = float(joints[joint])
+    for joint, angle in enumerate(joints):
+        state[joint] = float(angle)
     return state

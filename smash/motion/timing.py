@@ -1,4 +1,4 @@
-"""When the arm is where: paths become trajectories within the Panda's velocity and acceleration limits.
+"""When the arm is where: paths become trajectories within a robot's velocity and acceleration limits.
 
 A straight joint segment gets the fastest synchronised trapezoid; any other path goes through toppra (time-optimal path
 parameterisation by reachability analysis) on a spline through closely spaced points, since a spline through sparse ones
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from smash.motion.errors import NoMotion
 from smash.motion.paths import Path, Waypoints, densify
-from smash.motion.robot import ACCELERATION, VELOCITY, panda
+from smash.motion.robot import Robot
 
 KNOT_STEP = 0.01
 """Trajectories are stored at this interval [s]."""
@@ -59,8 +59,8 @@ class Trajectory:
 
     Attributes:
         times: Knots [s], shape (T,), from 0.
-        positions: [rad], shape (T, 7).
-        velocities: [rad/s], shape (T, 7).
+        positions: [rad], shape (T, n).
+        velocities: [rad/s], shape (T, n).
     """
 
     times: NDArray[np.float64]
@@ -73,7 +73,7 @@ class Trajectory:
         return float(self.times[-1])
 
     def at(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Configurations at `times` [s], shape (N,), held at the ends: [rad], shape (N, 7)."""
+        """Configurations at `times` [s], shape (N,), held at the ends: [rad], shape (N, n)."""
         if len(self.times) < 2:
             return np.repeat(self.positions, len(times), axis=0)
         clipped = np.clip(times, 0.0, self.duration)
@@ -89,15 +89,16 @@ class Trajectory:
         )
 
     def sample(self, step: float) -> NDArray[np.float64]:
-        """Configurations every `step` [s] after the start, the end included: [rad], shape (N, 7)."""
+        """Configurations every `step` [s] after the start, the end included: [rad], shape (N, n)."""
         count = max(1, int(np.ceil(self.duration / step - 1e-9)))
         return self.at(np.minimum(np.arange(1, count + 1) * step, self.duration))
 
 
-def time_path(path: Path, pace: Pace = FREE) -> Trajectory:
+def time_path(robot: Robot, path: Path, pace: Pace = FREE) -> Trajectory:
     """The fastest trajectory along the path that begins and ends at rest and keeps the pace, `eased`.
 
     Args:
+        robot: Whose limits are kept.
         path: Where.
         pace: Share of the limits, and the tool's greatest speed.
 
@@ -107,15 +108,15 @@ def time_path(path: Path, pace: Pace = FREE) -> Trajectory:
     if path.length < 1e-9:
         return Trajectory(np.zeros(1), path.waypoints[:1], np.zeros((1, path.waypoints.shape[1])))
     if len(path.waypoints) == 2 and pace.tool_speed is None:
-        return eased(trapezoid(path.start, path.end, pace))
-    return eased(_toppra(path.waypoints, pace))
+        return eased(trapezoid(robot, path.start, path.end, pace))
+    return eased(_toppra(robot, path.waypoints, pace))
 
 
 def eased(trajectory: Trajectory) -> Trajectory:
     """The average of a trajectory over the last `EASED` seconds, at rest at both ends as it is.
 
     Velocity and acceleration are averages too, so they keep every limit that they kept before, and the jerk is at most
-    the greatest change of acceleration over `EASED`: within the Panda's limits at any pace. With an acceleration of at
+    the greatest change of acceleration over `EASED`: within the robot's limits (`_rise`). With an acceleration of at
     most a [rad/s^2] the path is left by a EASED^2 / 24, a fraction of a milliradian.
     """
     duration = trajectory.duration + EASED
@@ -130,7 +131,7 @@ def eased(trajectory: Trajectory) -> Trajectory:
     return Trajectory(times, positions, velocities)
 
 
-def trapezoid(begin: NDArray[np.float64], end: NDArray[np.float64], pace: Pace = FREE) -> Trajectory:
+def trapezoid(robot: Robot, begin: NDArray[np.float64], end: NDArray[np.float64], pace: Pace = FREE) -> Trajectory:
     """All joints start and stop together on the straight segment: the time-optimal motion along it.
 
     With s in [0, 1] along the segment, the speed limit is min_j v_j / |d_j| and the acceleration limit
@@ -138,8 +139,8 @@ def trapezoid(begin: NDArray[np.float64], end: NDArray[np.float64], pace: Pace =
     """
     displacement = end - begin
     size = np.maximum(np.abs(displacement), 1e-12)
-    acceleration = float(np.min(pace.acceleration * ACCELERATION / size))
-    speed = min(float(np.min(pace.velocity * VELOCITY / size)), float(np.sqrt(acceleration)))
+    acceleration = float(np.min(_rise(robot, pace.acceleration) / size))
+    speed = min(float(np.min(pace.velocity * robot.velocity / size)), float(np.sqrt(acceleration)))
     ramp = speed / acceleration
     duration = 1.0 / speed + ramp
     times = np.unique(np.concatenate([np.arange(0.0, duration, KNOT_STEP), [ramp, duration - ramp, duration]]))
@@ -152,10 +153,11 @@ def trapezoid(begin: NDArray[np.float64], end: NDArray[np.float64], pace: Pace =
     return Trajectory(times, begin + part[:, None] * displacement, rate[:, None] * displacement)
 
 
-def time_gently(path: Path, length: float, speed: float, acceleration: float) -> Trajectory:
+def time_gently(robot: Robot, path: Path, length: float, speed: float, acceleration: float) -> Trajectory:
     """An eased trapezoid for a path whose waypoints are evenly spaced in the world: what is carried is hardly shaken.
 
     Args:
+        robot: Whose limits are kept.
         path: Where; between two neighbouring waypoints a point of what is carried moves the same way.
         length: Of that point's way [m].
         speed: Its greatest speed [m/s].
@@ -166,7 +168,7 @@ def time_gently(path: Path, length: float, speed: float, acceleration: float) ->
     waypoints = path.waypoints
     tangent = np.gradient(waypoints, 1.0 / (len(waypoints) - 1), axis=0)
     steepest = np.maximum(np.abs(tangent).max(axis=0), 1e-12)
-    fastest = min(speed / length, float(np.min(VELOCITY / steepest)))
+    fastest = min(speed / length, float(np.min(robot.velocity / steepest)))
     rise = acceleration / length
     rate = min(fastest, float(np.sqrt(rise)))
     ramp, duration = rate / rise, 1.0 / rate + rate / rise
@@ -182,7 +184,7 @@ def time_gently(path: Path, length: float, speed: float, acceleration: float) ->
     return eased(Trajectory(times, positions, velocities))
 
 
-def _toppra(waypoints: Waypoints, pace: Pace) -> Trajectory:
+def _toppra(robot: Robot, waypoints: Waypoints, pace: Pace) -> Trajectory:
     # toppra loads a plotting library: a second that `smash plan` must not pay.
     import toppra
     from toppra.algorithm import TOPPRA
@@ -192,10 +194,12 @@ def _toppra(waypoints: Waypoints, pace: Pace) -> Trajectory:
     points = points[np.concatenate([[True], np.any(np.abs(np.diff(points, axis=0)) > 1e-9, axis=1)])]
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     spline = toppra.SplineInterpolator(arc, points)
-    constraints = list(_joint_limits(pace.velocity, min(pace.acceleration, MOST_ON_CURVES)))
+    constraints = list(_joint_limits(robot, pace.velocity, min(pace.acceleration, MOST_ON_CURVES)))
     if pace.tool_speed is not None:
         tool_speed = pace.tool_speed
-        constraints.append(JointVelocityConstraintVarying(lambda s: _tool_limits(spline(s), spline(s, 1), tool_speed)))
+        constraints.append(
+            JointVelocityConstraintVarying(lambda s: _tool_limits(robot, spline(s), spline(s, 1), tool_speed))
+        )
     grid = np.linspace(0.0, arc[-1], int(np.clip(2 * len(points), FEWEST_GRIDPOINTS, MOST_GRIDPOINTS)))
     algorithm = TOPPRA(
         constraints, spline, gridpoints=grid, parametrizer="ParametrizeConstAccel", solver_wrapper="seidel"
@@ -209,20 +213,27 @@ def _toppra(waypoints: Waypoints, pace: Pace) -> Trajectory:
     return Trajectory(times, positions, velocities)
 
 
+def _rise(robot: Robot, share: float) -> NDArray[np.float64]:
+    """Acceleration limits at a pace, no greater than what the jerk limits let through (`eased`) [rad/s^2], (n,)."""
+    return np.asarray(np.minimum(share * robot.acceleration, robot.jerk * EASED / 2))
+
+
 @cache
-def _joint_limits(velocity: float, acceleration: float) -> tuple[Any, Any]:
+def _joint_limits(robot: Robot, velocity: float, acceleration: float) -> tuple[Any, Any]:
     """The constraints of toppra for shares of the joints' limits: they write themselves out as texts when made."""
     from toppra.constraint import JointAccelerationConstraint, JointVelocityConstraint
 
-    speed, rise = velocity * VELOCITY, acceleration * ACCELERATION
+    speed, rise = velocity * robot.velocity, _rise(robot, acceleration)
     return (
         JointVelocityConstraint(np.column_stack([-speed, speed])),
         JointAccelerationConstraint(np.column_stack([-rise, rise])),
     )
 
 
-def _tool_limits(joints: NDArray[np.float64], tangent: NDArray[np.float64], speed: float) -> NDArray[np.float64]:
-    """Joint velocity limits, shape (7, 2) [rad/s], that keep the tool's speed along the path's tangent."""
-    tool = float(np.linalg.norm(panda().jacobian(joints)[:3] @ tangent))
+def _tool_limits(
+    robot: Robot, joints: NDArray[np.float64], tangent: NDArray[np.float64], speed: float
+) -> NDArray[np.float64]:
+    """Joint velocity limits, shape (n, 2) [rad/s], that keep the tool's speed along the path's tangent."""
+    tool = float(np.linalg.norm(robot.jacobian(joints)[:3] @ tangent))
     limit = np.abs(tangent) * speed / max(tool, 1e-6) + 1e-6
     return np.column_stack([-limit, limit])

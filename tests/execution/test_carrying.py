@@ -20,11 +20,11 @@ from smash.execution.scene.tabletop import DoesNotFit, Slot
 from smash.execution.scene.tray import Tray, heading
 from smash.motion.errors import NoIk
 from smash.motion.move import Move
-from smash.motion.robot import READY, panda
 from smash.problem import Carrier, Carry, Law, Pick, Place, PositionsGoal, State
 from smash.problem.actions.registry import FAMILY
 from tests.execution.episodes import plan_of
 from tests.execution.scooping import scoop, scoop_scene
+from tests.robots import PANDA, READY
 
 LOADED = Carrier("tray", ("left", "right"), "left", 2, ("a", "c"))
 
@@ -72,7 +72,7 @@ def test_a_carried_tray_stays_level_all_the_way():
     assert held
     for move in held:
         samples = move.trajectory.sample(0.01)
-        tilts = [acos(min(1.0, -panda().forward(joints).rotation[2, 2])) for joints in samples]
+        tilts = [acos(min(1.0, -PANDA.forward(joints).rotation[2, 2])) for joints in samples]
         assert max(tilts) < 0.01
 
 
@@ -82,7 +82,7 @@ def test_a_carried_tray_is_accelerated_less_than_friction_bears():
     step, bears = 0.02, scene.tray.friction * scene.friction.block * 9.81
     for move in (move for move in moves if move.hand.attached is not None):
         offset = move.hand.attached.translations[-1]
-        frames = [panda().forward(joints) for joints in move.trajectory.sample(step)]
+        frames = [PANDA.forward(joints) for joints in move.trajectory.sample(step)]
         points = np.array([frame.position + frame.rotation @ offset for frame in frames])
         accelerations = np.linalg.norm(np.diff(points, 2, axis=0), axis=1) / step**2
         assert accelerations.max(initial=0.0) < 0.6 * bears

@@ -10,7 +10,6 @@ from smash.execution.policy import OPEN
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.scene.tabletop import Friction
 from smash.execution.viewing.recording import Recording
-from smash.motion.robot import ACCELERATION, JERK, LOWER, UPPER, VELOCITY, panda
 from smash.problem import Law, Pick, Place, Plan, PlanOptions, PositionsGoal, Topple, make_instance
 from smash.problem.actions.registry import kind_of
 from smash.problem.errors import Unsupported
@@ -18,6 +17,7 @@ from smash.problem.files.documents import parse_json
 from smash.problem.files.plans import read_plan
 from smash.records.episodes import episode_text
 from tests.execution.episodes import buried_plan, buried_target, plan_of, swapped_pair, swapped_plan
+from tests.robots import PANDA
 
 
 def run(instance, plan, *, scene=None, **options):
@@ -164,9 +164,9 @@ def test_what_is_sent_to_the_arm_keeps_the_panda_s_limits_jerk_included():
     executor = Executor(swapped_pair(), swapped_plan(), default_scene(), policy=OPEN)
     assert executor.run().success
     sent = np.array([joints for _, joints, _ in executor.world.recorded])
-    for order, limit in enumerate((VELOCITY, ACCELERATION, JERK), start=1):
+    for order, limit in enumerate((PANDA.velocity, PANDA.acceleration, PANDA.jerk), start=1):
         assert np.all(np.abs(np.diff(sent, n=order, axis=0)) / STEP**order <= limit)
-    assert np.all((sent >= LOWER) & (sent <= UPPER))
+    assert np.all((sent >= PANDA.lower) & (sent <= PANDA.upper))
 
 
 def test_a_start_with_a_block_in_the_hand_is_refused():
@@ -312,7 +312,7 @@ def test_what_the_fingers_hold_creeps_by_less_than_half_a_millimetre_in_mujoco()
 
     def look(world):
         if executor.performer.hand is not None and world.opening == 0.0:
-            tool = panda().forward(world.joints())
+            tool = PANDA.forward(world.joints())
             places.append(tool.rotation.T @ (world.pose("a").position - tool.position))
 
     plan = plan_of("one", Pick("a", "s1"), Place("a", "s2"))

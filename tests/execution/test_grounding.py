@@ -10,9 +10,9 @@ from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.scene.start import starting_poses
 from smash.motion.move import Move
-from smash.motion.robot import FINGERTIP_BEYOND_TOOL, READY, panda
 from smash.problem import IllegalAction, Law, Pick, Place, PositionsGoal, State, Topple, make_instance
 from tests.execution.episodes import swapped_pair, swapped_plan
+from tests.robots import PANDA, READY
 
 SCENE = default_scene()
 
@@ -40,7 +40,7 @@ def test_a_pick_of_a_toppled_block_is_a_gap_and_the_place_after_it_promises_a_wa
     assert (pick.segments, pick.end, pick.problem) == (None, None, None)
     assert place.segments is None
     slot = SCENE.bind(swapped_pair())["s1"]
-    assert panda().forward(place.approach.line.end).position[:2] == pytest.approx([slot.x, slot.y], abs=1e-3)
+    assert PANDA.forward(place.approach.line.end).position[:2] == pytest.approx([slot.x, slot.y], abs=1e-3)
     assert np.array_equal(place.end, place.approach.line.start)
     assert np.array_equal(back.segments[0].path.start, place.end)
 
@@ -87,7 +87,7 @@ def test_motions_planned_before_a_topple_is_seen_keep_clear_of_where_its_blocks_
     assert after.table == {"a", "b"}
     heaps = arm.scene({}, areas=areas)
     assert [move.free(heaps, 0.0) for move in [*pick.segments, *place.segments] if isinstance(move, Move)] == [True] * 6
-    tip = panda().forward(topple.end).position[2] - FINGERTIP_BEYOND_TOOL
+    tip = PANDA.forward(topple.end).position[2] - PANDA.hand.tip
     assert tip > max(area.height for area in areas)
 
 

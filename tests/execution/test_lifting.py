@@ -17,10 +17,10 @@ from smash.execution.scene.start import starting_poses
 from smash.execution.scene.tabletop import Slot
 from smash.motion.errors import NoIk
 from smash.motion.move import Move
-from smash.motion.robot import READY, panda
 from smash.problem import Lift, Pick, Place, PositionsGoal, State, make_instance
 from smash.problem.errors import ExecutionFailure
 from tests.execution.episodes import plan_of
+from tests.robots import PANDA, READY
 
 
 def two_piles(**start):
@@ -51,7 +51,7 @@ def test_a_pile_is_held_at_one_tilt_all_the_way(height):
     segments, after = lifted(two_piles(s1="abcd", s2="e"), Lift("s1", height, "s2"))
     assert after.piles["s2"] == [*"e", *"abcd"[height - 1 :]]
     tilts = [
-        acos(-panda().forward(joints).rotation[2, 2])
+        acos(-PANDA.forward(joints).rotation[2, 2])
         for segment in segments
         if isinstance(segment, Move) and segment.hand.attached is not None
         for joints in segment.trajectory.sample(0.02)

@@ -23,10 +23,10 @@ from smash.execution.scene.scene_file import default_scene, scene_of
 from smash.execution.sight import Sight
 from smash.experiments.executing import execute
 from smash.motion.move import Move
-from smash.motion.robot import READY, panda
 from smash.problem import MalformedFile, Pick, SmashError, read_instance
 from smash.problem.extras import default_engine
 from tests.execution.episodes import buried_plan, buried_target
+from tests.robots import PANDA, READY
 
 ROOT = Path(__file__).parents[2]
 ROW = (0.4, 0.1, 0.0225, 0.0, 0.0, 0.0, 1.0)
@@ -111,7 +111,7 @@ def test_a_gap_task_is_planned_for_recorded_poses_without_a_simulator(tmp_path):
     assert state.table == {"b", "c", "d"}
     task = Grounder(ArmMotions(scene, 0)).task(Pick("c", "table"), state, where, READY)
     moves = [segment for segment in task.segments if isinstance(segment, Move)]
-    tips = [panda().forward(move.path.end).position for move in moves]
+    tips = [PANDA.forward(move.path.end).position for move in moves]
     assert min(np.linalg.norm(tip[:2] - landed["c"].position[:2]) for tip in tips) < 0.005
 
 

@@ -16,7 +16,7 @@ from smash.motion.errors import NoMotion
 from smash.motion.kinematics import inverse
 from smash.motion.move import Move
 from smash.motion.obstacles import HandState
-from smash.motion.robot import READY, panda
+from tests.robots import PANDA, READY
 
 SIDE = 0.045
 
@@ -81,7 +81,7 @@ def test_a_block_at_the_foot_of_a_tower_is_taken_beside_its_middle_and_put_down_
     assert all(move.free(scene, 0.0) for move in moves)
     target = standing(*default_scene().stacks[2].point(0.0, 0.0, "outward"), 1.5 * SIDE, 0.2)
     way = hand.landing(moves[-1].path.end, "a", target, scene, grasp)
-    tool = panda().forward(way.line.end)
+    tool = PANDA.forward(way.line.end)
     held = grasp.hand(SIDE).attached
     stands = tool.position + tool.rotation @ held.translations[0]
     assert way.grasp == grasp
@@ -120,8 +120,8 @@ def test_a_block_at_the_foot_of_a_tower_has_no_centred_grasp(arm):
     block, walls = tower_beside(0.050)
     scene = arm.scene(walls)
     hands = [CENTRED.tool(block.position, block.yaw + turn * QUARTER) for turn in range(4)]
-    checker = CollisionChecker(scene, HandState(min(arm.openings)), CONTACT_MARGIN)
-    assert not any(checker.free(joints) for tool in hands for joints in inverse(tool, READY, count=3))
+    checker = CollisionChecker(PANDA, scene, HandState(min(arm.openings)), CONTACT_MARGIN)
+    assert not any(checker.free(joints) for tool in hands for joints in inverse(PANDA, tool, READY, count=3))
 
 
 @pytest.mark.parametrize("yaw", np.linspace(0.0, np.pi / 2, 7))
@@ -132,4 +132,4 @@ def test_the_open_hand_comes_down_beside_neighbours_and_not_on_their_edges(arm, 
     scene = arm.scene({"a": block, "b": standing(0.35 + away, 0.25, SIDE / 2, yaw)})
     segments, _ = hand.pick(READY, "a", block, scene)
     down = [segment for segment in segments if isinstance(segment, Move)][-2]
-    assert CollisionChecker(scene.without(["a"]), down.hand, ROOM - 1e-6).free(down.path.end)
+    assert CollisionChecker(PANDA, scene.without(["a"]), down.hand, ROOM - 1e-6).free(down.path.end)

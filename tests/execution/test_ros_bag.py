@@ -16,13 +16,15 @@ from smash.execution.scene.block_pose import BlockPose
 from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.viewing.capture import Capture
-from smash.execution.viewing.ros_bag import ACTION, ARM, BASE, FINGER_JOINTS, HAND, JOINTS, POSES, SHAPES, write_bag
+from smash.execution.viewing.ros_bag import ACTION, JOINTS, POSES, SHAPES, arm_topic, hand_topic, write_bag
 from smash.execution.viewing.ros_messages import definition
 from smash.motion.poses import Matrix
-from smash.motion.robot import ARM_JOINTS, READY, VELOCITY, within_limits
 from smash.problem.extras import MissingExtra
 from tests.execution.episodes import buried_plan, buried_target
 from tests.execution.made_up import episode_of, recording_of
+from tests.robots import PANDA, READY
+
+ARM, HAND = arm_topic(PANDA), hand_topic(PANDA)
 
 
 def messages_of(path):
@@ -88,9 +90,9 @@ def test_every_topic_is_there_and_its_times_go_forward(performed):
 
 def test_joints_have_the_names_of_the_urdf_and_keep_its_limits(performed):
     for _, state in performed[3][JOINTS]:
-        assert tuple(state.name) == (*ARM_JOINTS, *FINGER_JOINTS)
-        assert within_limits(np.array(state.position[:7]), 0.01)
-    for topic, names in ((ARM, ARM_JOINTS), (HAND, FINGER_JOINTS)):
+        assert tuple(state.name) == (*PANDA.joints, *PANDA.hand.joints)
+        assert PANDA.within_limits(np.array(state.position[:7]), 0.01)
+    for topic, names in ((ARM, PANDA.joints), (HAND, PANDA.hand.joints)):
         for _, trajectory in performed[3][topic]:
             assert tuple(trajectory.joint_names) == names
             assert all(len(point.positions) == len(names) for point in trajectory.points)
@@ -114,7 +116,7 @@ def test_an_action_has_a_trajectory_that_begins_at_rest_where_the_last_one_ended
     for _, trajectory in found[ARM]:
         speeds = np.array([point.velocities for point in trajectory.points])
         assert np.all(speeds[[0, -1]] == 0.0)
-        assert np.all(np.abs(speeds) <= VELOCITY)
+        assert np.all(np.abs(speeds) <= PANDA.velocity)
 
 
 def test_the_points_of_the_arm_are_what_it_was_sent_to(performed):
@@ -131,7 +133,7 @@ def test_poses_of_all_blocks_end_as_the_episode_does(performed):
     blocks = list(executor.instance.blocks)
     for moment, message in found[POSES]:
         assert [frame.child_frame_id for frame in message.transforms] == blocks
-        assert {frame.header.frame_id for frame in message.transforms} == {BASE}
+        assert {frame.header.frame_id for frame in message.transforms} == {"panda_link0"}
         assert all(seconds_of(frame.header.stamp) == pytest.approx(moment) for frame in message.transforms)
     start, end = poses_of(found[POSES][0][1]), poses_of(found[POSES][-1][1])
     assert end["a"].distance(*executor.table.point("g")) < 0.01 < start["a"].distance(*executor.table.point("g"))
@@ -161,7 +163,7 @@ def test_the_record_of_the_episode_is_attached(performed):
 def test_an_episode_without_actions_has_a_trajectory_that_stands_still(tmp_path):
     recorded = [(step / 480, READY, 0.04) for step in range(1, 49)]
     end = 0.1, Geometry({}, {}, {"ä b": BlockPose(np.zeros(3), np.eye(3))}, {})
-    write_bag(tmp_path / "e.mcap", recorded, recording_of(1, 0.08), end, default_scene(), episode_of("none"))
+    write_bag(tmp_path / "e.mcap", PANDA, recorded, recording_of(1, 0.08), end, default_scene(), episode_of("none"))
     found = messages_of(tmp_path / "e.mcap")
     ((_, trajectory),) = found[ARM]
     assert all(np.array_equal(point.positions, READY) for point in trajectory.points)
@@ -175,7 +177,7 @@ def test_equal_episodes_make_equal_files_however_long_they_were_planned(tmp_path
     for seconds, path in enumerate(files):
         episode = episode_of("one", ["pick", "a"])
         episode.times.offline = episode.actions[0].times.online = float(seconds)
-        write_bag(path, recorded, recording_of(1, 0.08), end, default_scene(), episode)
+        write_bag(path, PANDA, recorded, recording_of(1, 0.08), end, default_scene(), episode)
     assert files[0].read_bytes() == files[1].read_bytes()
 
 

@@ -20,7 +20,7 @@ from smash.execution.scene.block_pose import standing
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.scene.tabletop import Slot
 from smash.motion.move import Move
-from smash.motion.robot import FINGERTIP_BEYOND_TOOL, READY, panda
+from tests.robots import PANDA, READY
 
 
 @given(st.integers(1, 12), st.integers(1, 12))
@@ -54,9 +54,9 @@ def test_a_push_meets_the_pile_at_the_speed_that_its_manner_asks_for_as_far_as_t
     poses = {b: standing(slot.x, slot.y, (level + 0.5) * scene.side, slot.angle) for level, b in enumerate(pile)}
     moves = [move for move in topple(ArmMotions(scene), READY, slot, pile, height, poses) if isinstance(move, Move)]
     push = next(move for move in moves if move.margin == PUSH_MARGIN and move.ignored)
-    over = panda().forward(moves[-1].path.end).position[2] - FINGERTIP_BEYOND_TOOL
+    over = PANDA.forward(moves[-1].path.end).position[2] - PANDA.hand.tip
     assert over > heap(falling) * scene.side
-    tool = np.array([panda().forward(row).position for row in push.trajectory.sample(1e-3)])
+    tool = np.array([PANDA.forward(row).position for row in push.trajectory.sample(1e-3)])
     speeds = np.linalg.norm(np.diff(tool, axis=0), axis=1) / 1e-3
     contact = int(np.searchsorted(np.linalg.norm(tool - tool[0], axis=1), RUN_UP))
     assert speeds[contact] >= 0.98 * at_contact

@@ -2,15 +2,15 @@ import numpy as np
 import pytest
 
 from smash.execution.viewing.trajectory_file import read_trajectory, write_trajectory
-from smash.motion.robot import READY
 from smash.motion.timing import trapezoid
 from smash.problem.errors import MalformedFile
+from tests.robots import PANDA, READY
 
 
 def test_a_trajectory_is_read_back_bit_for_bit(tmp_path):
-    trajectory = trapezoid(READY, READY + 0.3)
+    trajectory = trapezoid(PANDA, READY, READY + 0.3)
     wide = np.linspace(0.0, 0.04, len(trajectory.times))
-    write_trajectory(tmp_path / "t.csv", zip(trajectory.times, trajectory.positions, wide, strict=True))
+    write_trajectory(tmp_path / "t.csv", PANDA.joints, zip(trajectory.times, trajectory.positions, wide, strict=True))
     times, joints, openings = read_trajectory(tmp_path / "t.csv")
     assert np.array_equal(openings, wide)
     assert np.array_equal(times, trajectory.times)
@@ -18,7 +18,7 @@ def test_a_trajectory_is_read_back_bit_for_bit(tmp_path):
 
 
 def test_an_episode_without_a_motion_is_a_header_alone(tmp_path):
-    write_trajectory(tmp_path / "t.csv", [])
+    write_trajectory(tmp_path / "t.csv", PANDA.joints, [])
     times, joints, openings = read_trajectory(tmp_path / "t.csv")
     assert times.shape == openings.shape == (0,)
     assert joints.shape == (0, 7)

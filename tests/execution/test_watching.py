@@ -9,8 +9,8 @@ from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.scene.start import starting_poses
 from smash.execution.watching import Watch, part_of, spoilt
-from smash.motion.robot import READY
 from smash.problem import Law, Pick, Place, PositionsGoal, State, Topple, make_instance
+from tests.robots import READY
 
 SCENE = default_scene()
 

@@ -7,16 +7,15 @@ import numpy as np
 import pytest
 
 from smash.execution.physics.engines import world_of
-from smash.execution.physics.simulated_robot import FINGER_SIDES, simulated_panda
+from smash.execution.physics.simulated_robot import simulated_robot
 from smash.execution.physics.world import STEP
 from smash.execution.scene.block_pose import quaternion_of, standing
 from smash.execution.scene.scene_file import default_scene
-from smash.motion.collision import FINGER_CORNERS, FINGER_JOINT_Z, HAND_TO_TOOL
 from smash.motion.kinematics import inverse
 from smash.motion.poses import top_down, yaw_rotation
-from smash.motion.robot import READY, panda
 from smash.motion.timing import trapezoid
 from smash.problem.extras import ENGINES
+from tests.robots import PANDA, READY
 
 SCENE = default_scene()
 SIDE = SCENE.side
@@ -63,25 +62,25 @@ def test_time_goes_in_steps_and_every_step_is_recorded(opened):
 def test_the_arm_follows_a_trajectory_to_its_end_and_the_fingers_open(opened):
     goal = READY + np.array([0.3, 0, 0, 0, 0, 0, 0])
     with opened({}, READY) as world:
-        world.follow(trapezoid(READY, goal), opening=0.01)
+        world.follow(trapezoid(PANDA, READY, goal), opening=0.01)
         world.wait(0.5)
         assert np.array_equal(world.commanded(), goal)
         assert world.joints() == pytest.approx(goal, abs=0.005)
-        assert world.tool_position() == pytest.approx(panda().forward(goal).position, abs=0.005)
+        assert world.tool_position() == pytest.approx(PANDA.forward(goal).position, abs=0.005)
         assert world.opening == 0.01
 
 
 @pytest.mark.parametrize("meant", [frozenset(), frozenset({"a"})])
 def test_a_block_that_the_hand_shoves_is_noted_unless_it_is_meant_to(opened, meant):
-    lowered = inverse(top_down((0.4, 0.0, SIDE / 2), 0.0))[0]
+    lowered = inverse(PANDA, top_down((0.4, 0.0, SIDE / 2), 0.0))[0]
     turned = lowered + np.array([0.4, 0, 0, 0, 0, 0, 0])
-    x, y = panda().forward(lowered + np.array([0.25, 0, 0, 0, 0, 0, 0])).position[:2]
+    x, y = PANDA.forward(lowered + np.array([0.25, 0, 0, 0, 0, 0, 0])).position[:2]
     blocks = {"a": standing(x, y, SIDE / 2, 0.0), "b": standing(-0.4, 0.0, SIDE / 2, 0.0)}
     with opened(blocks, lowered) as world:
         world.wait(0.1)
         assert world.touched() == []
         world.meant = meant
-        world.follow(trapezoid(lowered, turned))
+        world.follow(trapezoid(PANDA, lowered, turned))
         assert world.pose("a").distance(x, y) > 0.02
         assert world.touched() == ([] if meant else ["a"])
         assert world.touched() == []
@@ -92,18 +91,19 @@ def test_a_quaternion_of_a_quarter_turn():
 
 
 def test_the_simulators_fingers_are_the_boxes_of_the_collision_checker():
-    with simulated_panda() as urdf:
+    with simulated_robot(PANDA) as urdf:
         robot = ET.parse(urdf).getroot()
-    size = FINGER_CORNERS[1] - FINGER_CORNERS[0]
+    hand = PANDA.hand
+    size = hand.finger[1] - hand.finger[0]
     for link in robot.findall("link"):
-        side = FINGER_SIDES.get(link.get("name"))
-        if side is None:
+        if link.get("name") not in hand.fingers:
             continue
+        side = (1, -1)[hand.fingers.index(link.get("name"))]
         (shape,) = link.findall("collision")
         assert [float(part) for part in shape.find("geometry/box").get("size").split()] == pytest.approx(size, abs=1e-5)
         _, y, z = (float(part) for part in shape.find("origin").get("xyz").split())
         assert y * side > 0
-        assert z + FINGER_JOINT_Z == pytest.approx(FINGER_CORNERS[:, 2].mean(), abs=1e-5)
+        assert z + 0.0584 == pytest.approx(hand.finger[:, 2].mean(), abs=1e-5)
 
 
 LOWERED = np.array([0.0, 0.14, 0.0, -2.719, 0.0, 2.86, 0.785])
@@ -119,7 +119,7 @@ SWEPT = (
 def swept(opened):
     """A world in which the arm has swept the upper part of a pile down."""
     with opened(PILE, LOWERED) as world:
-        world.follow(trapezoid(LOWERED, LOWERED + np.array([0.8, 0, 0, 0, 0, 0, 0])), opening=0.02)
+        world.follow(trapezoid(PANDA, LOWERED, LOWERED + np.array([0.8, 0, 0, 0, 0, 0, 0])), opening=0.02)
         world.wait(0.5)
         poses = list(world.poses().values())
         everything = [pose.position for pose in poses] + [pose.rotation for pose in poses]
@@ -143,9 +143,9 @@ def test_links_and_tool_are_where_the_kinematics_has_them(opened):
         links, joints = world.links(), world.joints()
         assert links.shape == (10, 7)
         assert np.linalg.norm(links[:, 3:], axis=1) == pytest.approx(1.0)
-        assert world.tool_position() == pytest.approx(panda().forward(joints).position, abs=1e-4)
-        tool = panda().forward(joints)
-        assert links[7, :3] + HAND_TO_TOOL * tool.rotation[:, 2] == pytest.approx(tool.position, abs=1e-4)
+        assert world.tool_position() == pytest.approx(PANDA.forward(joints).position, abs=1e-4)
+        tool = PANDA.forward(joints)
+        assert links[7, :3] + PANDA.hand.tool[2] * tool.rotation[:, 2] == pytest.approx(tool.position, abs=1e-4)
         assert world.fingers() == pytest.approx([0.04, 0.04], abs=0.001)
         assert world.torques().shape == (7,)
 

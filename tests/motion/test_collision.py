@@ -11,49 +11,49 @@ from smash.motion.collision import CollisionChecker, arm_model
 from smash.motion.fit_spheres import surface_samples
 from smash.motion.hulls import HullChecker, link_vertices
 from smash.motion.obstacles import Attached, HandState, Scene
-from smash.motion.robot import LOWER, READY, UPPER, panda
 from tests.motion.towers import SIDE, tower_scene
+from tests.robots import PANDA, READY
 
 TOWERS = tower_scene({-1.7: 4, -0.5: 5, 0.7: 9})
 HAND = HandState(SIDE / 2, Attached.cube(SIDE))
 
 
 def configurations(count, seed):
-    return np.random.default_rng(seed).uniform(LOWER, UPPER, (count, 7))
+    return np.random.default_rng(seed).uniform(PANDA.lower, PANDA.upper, (count, 7))
 
 
 def test_both_kinematics_agree():
     for joints in configurations(20, 0):
-        frames = kernel.link_frames(arm_model().chain, joints)
-        pose = panda().forward(joints)
+        frames = kernel.link_frames(arm_model(PANDA).chain, joints)
+        pose = PANDA.forward(joints)
         assert np.allclose(frames[8, :, 3], pose.position)
         assert np.allclose(frames[8, :, :3], pose.rotation)
 
 
 @pytest.mark.parametrize("link", range(8))
 def test_the_spheres_cover_the_hull_of_their_link(link):
-    model = arm_model()
+    model = arm_model(PANDA)
     own = model.spheres[model.first[link] : model.first[link + 1]]
-    points = surface_samples(link_vertices(link), 2000, np.random.default_rng(7))
+    points = surface_samples(link_vertices(PANDA, f"panda_link{link}"), 2000, np.random.default_rng(7))
     outside = np.linalg.norm(points[:, None] - own[None, :, :3], axis=2) - own[None, :, 3]
     assert outside.min(axis=1).max() < 0.002
-    assert ConvexHull(link_vertices(link)).volume > 0
+    assert ConvexHull(link_vertices(PANDA, f"panda_link{link}")).volume > 0
 
 
 def test_no_collision_of_the_hulls_with_the_scene_is_missed():
-    checker, hulls = CollisionChecker(TOWERS, HAND, margin=0.0), HullChecker(TOWERS, HAND, tolerance=0.0)
+    checker, hulls = CollisionChecker(PANDA, TOWERS, HAND, margin=0.0), HullChecker(PANDA, TOWERS, HAND, tolerance=0.0)
     missed = [joints for joints in configurations(600, 1) if checker.free(joints) and hulls.contact(joints)]
     assert missed == []
 
 
 def test_what_is_free_with_a_margin_is_free_without():
-    near, far = CollisionChecker(TOWERS, HAND, margin=0.0), CollisionChecker(TOWERS, HAND, margin=0.01)
+    near, far = CollisionChecker(PANDA, TOWERS, HAND, margin=0.0), CollisionChecker(PANDA, TOWERS, HAND, margin=0.01)
     for joints in configurations(200, 2):
         assert far.slack(joints) <= near.slack(joints)
 
 
 def test_a_segment_is_free_exactly_where_all_of_a_dense_sample_is():
-    checker = CollisionChecker(TOWERS, HAND)
+    checker = CollisionChecker(PANDA, TOWERS, HAND)
     free = [joints for joints in configurations(120, 3) if checker.free(joints)]
     verdicts = set()
     for begin, end in pairwise(free):
@@ -65,9 +65,9 @@ def test_a_segment_is_free_exactly_where_all_of_a_dense_sample_is():
 
 
 def test_blockers_are_named_and_ignored_blocks_are_not():
-    block = Scene.of_boxes(["b"], [panda().forward(READY).position], 0.02)
-    assert CollisionChecker(block).blockers(READY) == ("block 'b'",)
-    assert CollisionChecker(block.without(["b"])).free(READY)
+    block = Scene.of_boxes(["b"], [PANDA.forward(READY).position], 0.02)
+    assert CollisionChecker(PANDA, block).blockers(READY) == ("block 'b'",)
+    assert CollisionChecker(PANDA, block.without(["b"])).free(READY)
 
 
 @settings(max_examples=60, deadline=None)

@@ -5,11 +5,13 @@ from itertools import pairwise
 import numpy as np
 
 from smash.motion import rrtconnect
-from smash.motion.robot import LOWER, READY, UPPER
+from tests.robots import PANDA, READY
 
 
 class Wall:
     """Joint 1 must not be within 0.2 rad of 0, unless joint 2 is above `gap` [rad]."""
+
+    robot = PANDA
 
     def __init__(self, gap):
         self.gap = gap
@@ -32,7 +34,7 @@ def test_the_way_leads_through_the_gap_and_stays_within_the_limits():
     assert np.allclose(way[-1], aside(0.5))
     assert all(wall.segment_free(begin, end) for begin, end in pairwise(way))
     assert way[:, 1].max() > 0.5
-    assert np.all((way >= LOWER) & (way <= UPPER))
+    assert np.all((way >= PANDA.lower) & (way <= PANDA.upper))
 
 
 def test_the_same_seed_finds_the_same_way_whatever_was_searched_before():

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from smash.motion.paths import Path, round_corners
-from smash.motion.robot import ACCELERATION, JERK, READY, VELOCITY
 from smash.motion.timing import EASED, Pace, eased, time_path, trapezoid
+from tests.robots import PANDA, READY
 
 CORNERS = np.stack([READY, READY + 0.4, READY + np.array([0.8, 0.2, 0, 0.1, 0, 0.3, -0.4])])
 
@@ -11,15 +11,15 @@ CORNERS = np.stack([READY, READY + 0.4, READY + np.array([0.8, 0.2, 0, 0.1, 0, 0
 @pytest.mark.parametrize("path", [Path(CORNERS[:2], "straight"), Path(CORNERS, "tree")])
 @pytest.mark.parametrize("pace", [Pace(), Pace(0.25, 0.1)])
 def test_a_trajectory_starts_and_ends_at_rest_and_keeps_the_limits(path, pace):
-    trajectory = time_path(path, pace)
+    trajectory = time_path(PANDA, path, pace)
     step = 1e-3
     samples = np.vstack([path.start, trajectory.sample(step)])
     velocity = np.diff(samples[:-1], axis=0) / step
     acceleration = np.diff(velocity, axis=0) / step
     assert np.allclose(samples[-1], path.end)
     assert np.allclose(trajectory.velocities[[0, -1]], 0.0)
-    assert np.all(np.abs(velocity) <= pace.velocity * VELOCITY * 1.02)
-    assert np.quantile(np.abs(acceleration) / (pace.acceleration * ACCELERATION), 0.98) <= 1.1
+    assert np.all(np.abs(velocity) <= pace.velocity * PANDA.velocity * 1.02)
+    assert np.quantile(np.abs(acceleration) / (pace.acceleration * PANDA.acceleration), 0.98) <= 1.1
 
 
 @pytest.mark.parametrize("path", [Path(CORNERS[:2], "straight"), Path(CORNERS, "tree")])
@@ -28,17 +28,17 @@ def test_a_trajectory_keeps_the_panda_s_limits_at_the_rate_of_its_controller_jer
     """Commands go to a Panda every millisecond; at rest before and afterwards."""
     step = 1e-3
     rest = np.repeat(path.start[None], 5, axis=0), np.repeat(path.end[None], 5, axis=0)
-    samples = np.vstack([rest[0], time_path(path, pace).sample(step), rest[1]])
+    samples = np.vstack([rest[0], time_path(PANDA, path, pace).sample(step), rest[1]])
     velocity = np.diff(samples, axis=0) / step
     acceleration = np.diff(velocity, axis=0) / step
     jerk = np.diff(acceleration, axis=0) / step
-    assert np.all(np.abs(velocity) <= VELOCITY * 1.01)
-    assert np.all(np.abs(acceleration) <= ACCELERATION * 1.02)
-    assert np.all(np.abs(jerk) <= JERK)
+    assert np.all(np.abs(velocity) <= PANDA.velocity * 1.01)
+    assert np.all(np.abs(acceleration) <= PANDA.acceleration * 1.02)
+    assert np.all(np.abs(jerk) <= PANDA.jerk)
 
 
 def test_an_eased_trajectory_takes_a_moment_longer_and_hardly_leaves_the_path():
-    steep = trapezoid(READY, READY + np.array([1.0, 0.3, 0, 0, 0, 0, 0]), Pace(1.0, 1.0))
+    steep = trapezoid(PANDA, READY, READY + np.array([1.0, 0.3, 0, 0, 0, 0, 0]), Pace(1.0, 1.0))
     soft = eased(steep)
     assert soft.duration == pytest.approx(steep.duration + EASED)
     direction = np.array([1.0, 0.3, 0, 0, 0, 0, 0]) / np.hypot(1.0, 0.3)
@@ -48,20 +48,20 @@ def test_an_eased_trajectory_takes_a_moment_longer_and_hardly_leaves_the_path():
 
 
 def test_a_straight_segment_runs_at_the_limit_of_its_slowest_joint():
-    trajectory = trapezoid(READY, READY + np.array([2.0, 0, 0, 0, 0, 0, 0]), Pace(1.0, 1.0))
-    assert trajectory.duration == pytest.approx(2.0 / VELOCITY[0] + VELOCITY[0] / ACCELERATION[0])
-    assert np.abs(trajectory.velocities).max() == pytest.approx(VELOCITY[0])
+    trajectory = trapezoid(PANDA, READY, READY + np.array([2.0, 0, 0, 0, 0, 0, 0]), Pace(1.0, 1.0))
+    assert trajectory.duration == pytest.approx(2.0 / PANDA.velocity[0] + PANDA.velocity[0] / PANDA.acceleration[0])
+    assert np.abs(trajectory.velocities).max() == pytest.approx(PANDA.velocity[0])
 
 
 def test_a_path_of_no_length_takes_no_time():
-    trajectory = time_path(Path(np.stack([READY, READY]), "straight"))
+    trajectory = time_path(PANDA, Path(np.stack([READY, READY]), "straight"))
     assert trajectory.duration == 0.0
     assert np.array_equal(trajectory.sample(0.01), READY[None])
 
 
 def test_a_trajectory_stays_on_its_path():
     path = Path(round_corners(CORNERS, lambda _: True), "tree")
-    samples = time_path(path).sample(0.005)
+    samples = time_path(PANDA, path).sample(0.005)
     begin, end = path.waypoints[:-1, None], path.waypoints[1:, None]
     part = np.sum((samples - begin) * (end - begin), axis=2) / np.sum((end - begin) ** 2, axis=2)
     nearest = begin + np.clip(part, 0, 1)[:, :, None] * (end - begin)
@@ -69,5 +69,5 @@ def test_a_trajectory_stays_on_its_path():
 
 
 def test_a_finer_sampling_of_a_trajectory_passes_through_the_coarser_one():
-    trajectory = time_path(Path(CORNERS, "tree"))
+    trajectory = time_path(PANDA, Path(CORNERS, "tree"))
     assert np.allclose(trajectory.sample(0.01)[:-1], trajectory.sample(0.002)[4::5][: len(trajectory.sample(0.01)) - 1])

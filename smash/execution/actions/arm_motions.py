@@ -24,7 +24,7 @@ from smash.motion.obstacles import BodyName, HandState, Scene
 from smash.motion.paths import Path
 from smash.motion.planner import MotionPlanner
 from smash.motion.poses import Vector
-from smash.motion.robot import MAX_OPENING, READY
+from smash.motion.robots import load_robot
 from smash.motion.timing import Pace, time_path
 from smash.problem.errors import ExecutionFailure
 
@@ -71,6 +71,7 @@ class ArmMotions:
         seed: Of the motion planner.
 
     Attributes:
+        robot: The scene's.
         planner: Plans paths.
     """
 
@@ -78,14 +79,16 @@ class ArmMotions:
         self.tabletop = tabletop
         self.side = tabletop.side
         self.pace = Pace(tabletop.velocity, tabletop.acceleration)
-        self.planner = MotionPlanner(seed=seed)
+        self.robot = load_robot(tabletop.robot)
+        self.planner = MotionPlanner(self.robot, seed=seed)
 
     def warm_up(self) -> None:
         """Load and compile what motion planning uses, so that the first action's time is not theirs."""
         bare = Scene.of_boxes([], np.empty((0, 3)), 0.0).with_table()
-        turned = READY + np.array([0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
-        self.move(self.planner.plan(READY, turned, bare), HandState(0.0))
-        self.move(self.planner.line(READY, (0.0, 0.0, 0.05), bare), HandState(0.0))
+        ready = self.robot.ready
+        turned = ready + 0.3 * self.robot.first_joint
+        self.move(self.planner.plan(ready, turned, bare), HandState(0.0))
+        self.move(self.planner.line(ready, (0.0, 0.0, 0.05), bare), HandState(0.0))
         importlib.import_module("smash.motion.rrtconnect")
 
     def scene(
@@ -127,8 +130,9 @@ class ArmMotions:
 
         Where blocks are not exactly where they are seen, that is as wide as the hand opens.
         """
-        rooms = (MAX_OPENING, *OPENINGS) if self.tabletop.noise.sees else OPENINGS
-        return tuple(min(MAX_OPENING, self.side / 2 + room) for room in rooms)
+        widest = self.robot.hand.opening
+        rooms = (widest, *OPENINGS) if self.tabletop.noise.sees else OPENINGS
+        return tuple(min(widest, self.side / 2 + room) for room in rooms)
 
     @property
     def release_height(self) -> float:
@@ -138,7 +142,7 @@ class ArmMotions:
     def transfer(
         self, start: Vector, goal: Vector, scene: Scene, hand: HandState, ignored: frozenset[BodyName] = frozenset()
     ) -> list[Move]:
-        """A free motion between configurations [rad], shape (7,); closer to blocks where it must be.
+        """A free motion between configurations [rad], shape (n,); closer to blocks where it must be.
 
         Raises:
             NoMotion: where there is none.
@@ -147,7 +151,7 @@ class ArmMotions:
         try:
             return [self.move(self.planner.plan(start, goal, seen, hand=hand), hand, ignored)]
         except NoMotion as failure:
-            wide = CollisionChecker(seen, hand, DEFAULT_MARGIN)
+            wide = CollisionChecker(self.robot, seen, hand, DEFAULT_MARGIN)
             close = [joints for joints in (start, goal) if not wide.free(joints)]
             if not close:
                 raise
@@ -175,4 +179,4 @@ class ArmMotions:
         pace: Pace | None = None,
     ) -> Move:
         """A timed motion along `path`, at the usual pace where none is given."""
-        return Move(path, time_path(path, pace or self.pace), hand, ignored, margin)
+        return Move(self.robot, path, time_path(self.robot, path, pace or self.pace), hand, ignored, margin)

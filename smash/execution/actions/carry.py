@@ -26,7 +26,6 @@ from smash.motion.kinematics import inverse
 from smash.motion.level import Gentleness, level_way
 from smash.motion.obstacles import Attached, BodyName, CarrierBody, HandState
 from smash.motion.poses import ToolPose, Vector, top_down
-from smash.motion.robot import panda
 from smash.problem.actions.carry import Carry
 from smash.problem.actions.registry import kind_of
 from smash.problem.errors import ExecutionFailure
@@ -56,7 +55,7 @@ class CarryMotion(AggregateMotion[Carry]):
         for turn in (0.0, pi):
             grasp = top_down(arm.tray.grip(from_pose), heading(from_pose) + turn)
             goal = top_down(arm.tray.grip(to_pose) + lift, heading(to_pose) + turn)
-            for joints in inverse(grasp, start, count=SOLUTIONS):
+            for joints in inverse(arm.robot, grasp, start, count=SOLUTIONS):
                 reached = True
                 try:
                     return self._with_grasp(arm, start, joints, goal, action.carrier, aboard, where)
@@ -109,7 +108,7 @@ class CarryMotion(AggregateMotion[Carry]):
         rest = scene.without(moved)
         opened = HandState(tray.post / 2 + OPENINGS[0])
         down = arm.planner.line(joints, (0.0, 0.0, DESCENT), scene, hand=opened).reversed()
-        load = Attached.of_scene(scene.only_of(moved), panda().forward(joints))
+        load = Attached.of_scene(scene.only_of(moved), arm.robot.forward(joints))
         closed = HandState(tray.post / 2, load)
         manner = Gentleness.of_friction(tray.friction, arm.tabletop.friction.block)
         way = level_way(arm.planner, joints, goal, rest, closed, moved, manner)

@@ -33,7 +33,7 @@ class AggregateMotion(ABC, Generic[A]):
 
         Args:
             arm: Plans motions.
-            start: Where the arm is [rad], shape (7,).
+            start: Where the arm is [rad], shape (n,).
             action: The action.
             state: The law's state before it.
             where: The poses that are known then.

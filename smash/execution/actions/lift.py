@@ -28,11 +28,10 @@ from smash.execution.scene.geometry import Geometry
 from smash.motion.collision import CONTACT_MARGIN, CollisionChecker
 from smash.motion.errors import NoIk, NoMotion
 from smash.motion.kinematics import descend, inverse
-from smash.motion.level import FIRST_JOINT, Gentleness, level_way
+from smash.motion.level import Gentleness, level_way
 from smash.motion.move import Move
 from smash.motion.obstacles import Attached, BodyName, HandState, Scene
 from smash.motion.poses import Matrix, ToolPose, Vector, yaw_rotation
-from smash.motion.robot import panda
 from smash.problem.actions.lift import Lift
 from smash.problem.actions.registry import kind_of
 from smash.problem.errors import ExecutionFailure
@@ -56,7 +55,7 @@ class _Grasp:
     """One way to hold what is lifted.
 
     Attributes:
-        joints: The arm as the hand closes [rad], shape (7,).
+        joints: The arm as the hand closes [rad], shape (n,).
         goal: The tool as it opens.
         room: The hand's, at both [m].
         far: How far the arm goes to it and turns with it [rad].
@@ -139,18 +138,18 @@ def _grasps(
         NoMotion: where the hand has no room at one of the ends.
     """
     opened = HandState(arm.side / 2 + OPENINGS[0])
-    here = CollisionChecker(scene.without(lifted[:1]), opened, 0.0)
-    there = CollisionChecker(scene.without(lifted), opened, 0.0)
+    here = CollisionChecker(arm.robot, scene.without(lifted[:1]), opened, 0.0)
+    there = CollisionChecker(arm.robot, scene.without(lifted), opened, 0.0)
     found: list[_Grasp] = []
     reached = False
     for tool in _holds(pose):
-        for joints in inverse(tool, start, count=SOLUTIONS):
+        for joints in inverse(arm.robot, tool, start, count=SOLUTIONS):
             reached = True
             room = here.slack(joints)
             if room <= CONTACT_MARGIN:
                 continue
             for goal, turn in _goals(tool, pose, target):
-                end = descend(goal, joints + turn * FIRST_JOINT, panda())
+                end = descend(arm.robot, goal, joints + turn * arm.robot.first_joint)
                 if end is not None and (room_there := there.slack(end)) > CONTACT_MARGIN:
                     far = float(np.abs(joints - start).max() + abs(end[0] - joints[0]))
                     found.append(_Grasp(joints, goal, min(room, room_there), far))
@@ -192,7 +191,7 @@ def _with_grasp(arm: ArmMotions, start: Vector, grasp: _Grasp, lifted: list[str]
     moved: frozenset[BodyName] = frozenset(lifted)
     rest, opened = scene.without(moved), HandState(arm.side / 2 + OPENINGS[0])
     joints, goal = grasp.joints, grasp.goal
-    tool = panda().forward(joints)
+    tool = arm.robot.forward(joints)
     back = -RUN_UP * tool.rotation[:, 2]
     way_in = arm.planner.line(joints, back, scene.without(lifted[:1]), hand=opened).reversed()
     held = HandState(arm.side / 2, Attached.of_scene(scene.only_of(moved), tool))

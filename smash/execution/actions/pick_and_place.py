@@ -110,7 +110,7 @@ class PickAndPlace:
         """The way down to where a block, which is in the hand, shall stand.
 
         Args:
-            start: Where the arm is [rad], shape (7,).
+            start: Where the arm is [rad], shape (n,).
             block: What is in the hand.
             target: Where it shall stand.
             scene: Everything.
@@ -138,7 +138,8 @@ class PickAndPlace:
         """
         near, waypoints = scene.without([block]), approach.line.waypoints
         hands = (approach.grasp.hand(self._arm.side), HandState(approach.opening))
-        return all(CollisionChecker(near, hand, CONTACT_MARGIN - allowance).path_free(waypoints) for hand in hands)
+        robot, margin = self._arm.robot, CONTACT_MARGIN - allowance
+        return all(CollisionChecker(robot, near, hand, margin).path_free(waypoints) for hand in hands)
 
     def place(self, start: Vector, block: str, approach: Approach, scene: Scene) -> list[Segment]:
         """From `start` [rad] with the block to above the place, down, open, and up again.
@@ -168,7 +169,7 @@ class PickAndPlace:
         """Ways down to a block whose middle is at a point, those with most room first; then those near to `start`.
 
         Args:
-            start: Where the arm is [rad], shape (7,).
+            start: Where the arm is [rad], shape (n,).
             point: [m], shape (3,).
             yaw: Of a side of the block [rad].
             near: All else.
@@ -180,12 +181,13 @@ class PickAndPlace:
             NoIk: where the arm cannot reach the point from above.
         """
         poses = [grasp.tool(point, yaw + turn * QUARTER) for turn in range(4)]
-        solutions = [joints for pose in poses for joints in inverse(pose, start, count=SOLUTIONS)]
+        robot = self._arm.robot
+        solutions = [joints for pose in poses for joints in inverse(robot, pose, start, count=SOLUTIONS)]
         if not solutions:
             raise NoIk(f"the hand cannot reach x {point[0]:.3f}, y {point[1]:.3f}, z {point[2]:.3f} m from above")
         ranked = []
         for opening in self._arm.openings:
-            checker = CollisionChecker(near, HandState(opening), 0.0)
+            checker = CollisionChecker(robot, near, HandState(opening), 0.0)
             for joints in solutions:
                 clearance = checker.slack(joints)
                 if clearance > room:

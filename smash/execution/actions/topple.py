@@ -20,12 +20,11 @@ from smash.execution.scene.area import Area
 from smash.execution.scene.block_pose import BlockPose
 from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.tabletop import Slot
-from smash.motion.collision import FINGER_CORNERS, HAND_CORNERS, HAND_TO_TOOL
 from smash.motion.errors import NoIk, NoMotion
 from smash.motion.kinematics import inverse
 from smash.motion.obstacles import HandState, Scene
 from smash.motion.poses import Vector, top_down
-from smash.motion.robot import FINGERTIP_BEYOND_TOOL
+from smash.motion.robot import Hand
 from smash.motion.timing import Pace
 from smash.problem.actions.registry import kind_of
 from smash.problem.actions.topple import Topple
@@ -161,7 +160,7 @@ def topple(
 
     Args:
         arm: Plans motions.
-        start: Where the arm is [rad], shape (7,).
+        start: Where the arm is [rad], shape (n,).
         slot: Where the pile stands.
         pile: Its blocks, bottom first.
         height: The lowest level that shall fall, 1 is the bottom.
@@ -239,8 +238,8 @@ def _push(
 ) -> list[Segment]:
     heading = slot.heading(direction)
     along = np.array([cos(heading), sin(heading), 0.0])
-    reach = _first_contact(len(falling), arm.side)
-    base = np.array([slot.x, slot.y, (height - 1 + ABOVE_CUT) * arm.side + FINGERTIP_BEYOND_TOOL])
+    reach = _first_contact(arm.robot.hand, len(falling), arm.side)
+    base = np.array([slot.x, slot.y, (height - 1 + ABOVE_CUT) * arm.side + arm.robot.hand.tip])
     how = manner(height, len(falling))
     length = RUN_UP + how.follow_through * arm.side
     closed, fallen = HandState(0.0), shoved.union(falling)
@@ -248,7 +247,7 @@ def _push(
     problem: ExecutionFailure | None = None
     for yaw in (heading, heading + np.pi):
         pose = top_down(base - (reach + RUN_UP) * along, yaw)
-        for joints in inverse(pose, start, count=PUSH_SOLUTIONS):
+        for joints in inverse(arm.robot, pose, start, count=PUSH_SOLUTIONS):
             try:
                 push = arm.planner.line(joints, length * along, pushed, hand=closed, margin=PUSH_MARGIN)
                 way, away = _way_in(arm, start, joints, scene)
@@ -296,11 +295,11 @@ def _rise(arm: ArmMotions, joints: Vector, height: int, falling: int, scene: Sce
     return [arm.move(up, HandState(0.0), margin=PUSH_MARGIN)]
 
 
-def _first_contact(falling: int, side: float) -> float:
+def _first_contact(hand: Hand, falling: int, side: float) -> float:
     """Distance of the tool's axis from the pile's middle when hand or fingers first touch it [m].
 
     A single block passes below the palm and is met by the fingers; the palm is thicker and meets taller segments first.
     """
-    palm_above_cut = ABOVE_CUT * side + FINGERTIP_BEYOND_TOOL + HAND_TO_TOOL - float(HAND_CORNERS[1, 2])
-    thickness = HAND_CORNERS[1, 0] if falling * side > palm_above_cut else FINGER_CORNERS[1, 0]
+    palm_above_cut = ABOVE_CUT * side + hand.tip + hand.palm_depth
+    thickness = hand.palm[1, 0] if falling * side > palm_above_cut else hand.finger[1, 0]
     return side / 2 + float(thickness)

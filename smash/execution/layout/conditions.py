@@ -24,7 +24,7 @@ from smash.motion.collision import CONTACT_MARGIN, CollisionChecker
 from smash.motion.kinematics import inverse
 from smash.motion.obstacles import HandState, Scene
 from smash.motion.poses import top_down
-from smash.motion.robot import MAX_OPENING
+from smash.motion.robots import load_robot
 
 FALLING = 4
 """Strips are checked for topples of so many blocks: larger ones are the planner's risk (`max_topple`)."""
@@ -77,14 +77,15 @@ def _interactive(tabletop: Tabletop, named: dict[str, Slot], name: str, full: di
     for index, station in enumerate(tabletop.stations):
         assert tabletop.tray is not None
         scene = scene.joined(tabletop.tray.scene(f"stations[{index}]", tabletop.tray_at(station)))
-    hand = HandState(min(MAX_OPENING, side / 2 + OPENINGS[-1]))
-    checker = CollisionChecker(scene, hand, CONTACT_MARGIN)
+    robot = load_robot(tabletop.robot)
+    hand = HandState(min(robot.hand.opening, side / 2 + OPENINGS[-1]))
+    checker = CollisionChecker(robot, scene, hand, CONTACT_MARGIN)
     for level in sorted({1, (height + 1) // 2, height}):
         point = (slot.x, slot.y, (level - 0.5) * side)
         solutions = [
             joints
             for turn in range(4)
-            for joints in inverse(top_down(point, slot.angle + turn * QUARTER), count=SOLUTIONS)
+            for joints in inverse(robot, top_down(point, slot.angle + turn * QUARTER), count=SOLUTIONS)
         ]
         if not solutions:
             return [Violation(condition, name, f"the hand does not reach height {level} from above")]
@@ -108,7 +109,7 @@ def _stations(tabletop: Tabletop) -> dict[str, Slot]:
 def _strip_problems(tabletop: Tabletop, named: dict[str, Slot], name: str, direction: str) -> list[Violation]:
     condition, slot, side = "monotone transformation", named[name], tabletop.side
     found = []
-    area = strip(FALLING)
+    area, robot = strip(FALLING), load_robot(tabletop.robot)
     tray = 0.0 if tabletop.tray is None else min(tabletop.tray.size) / 2
     rooms = {key: (other, side / 2) for key, other in named.items() if key != name}
     rooms |= {key: (station, tray) for key, station in _stations(tabletop).items()}
@@ -118,7 +119,7 @@ def _strip_problems(tabletop: Tabletop, named: dict[str, Slot], name: str, direc
             found.append(Violation(condition, name, f"{key} lies in the strip of a {direction} topple"))
     for along in np.linspace(2 * side, area.length, STRIP_SAMPLES):
         x, y = slot.point(float(along), 0.0, direction)
-        if not any(inverse(top_down((x, y, side / 2), yaw), count=1) for yaw in (0.0, pi / 2)):
+        if not any(inverse(robot, top_down((x, y, side / 2), yaw), count=1) for yaw in (0.0, pi / 2)):
             problem = f"the {direction} strip is out of reach {100 * float(along):.0f} cm from the stack"
             found.append(Violation(condition, name, problem))
             break

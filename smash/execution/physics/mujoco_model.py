@@ -1,4 +1,4 @@
-"""The scene as a MuJoCo model: the Panda's own URDF, the table, the blocks and the trays.
+"""The scene as a MuJoCo model: the robot's own URDF, the table, the blocks and the trays.
 
 MuJoCo takes for the friction of a contact what the geometry of the higher priority says, and the greater value where
 priorities are equal; the scene's coefficients multiply. So blocks have the lowest priority and their own product, and
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
-from functools import cache
+from functools import lru_cache
 from itertools import combinations
 from typing import Any
 
@@ -17,12 +17,12 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from smash.execution.physics.simulated_robot import FINGER_SIDES, panda_text
-from smash.execution.physics.world import ARM_FORCE, FINGER_FORCE
+from smash.execution.physics.simulated_robot import robot_text
 from smash.execution.scene.block_pose import BlockPose, quaternion_of
 from smash.execution.scene.noise import Made
 from smash.execution.scene.tabletop import Friction, Tabletop
-from smash.motion.robot import ARM_JOINTS
+from smash.motion.robot import Robot
+from smash.motion.robots import load_robot
 
 TIME_STEP, HOLDING_STEP = 1 / 960, 1 / 2400
 """Of the simulation, and while the hand holds something [s]. A contact's friction knows speeds and no places: a held
@@ -39,10 +39,6 @@ TORSION, ROLLING = 0.005, 0.0001
 """Friction against turning about the normal [m] and against rolling [m]."""
 FINGER_STIFFNESS, FINGER_DAMPING = 5000.0, 100.0
 """Of the fingers' motors [N/m], [N s/m]."""
-FINGER_JOINTS = ("panda_finger_joint1", "panda_finger_joint2")
-LINKS = (*(f"panda_link{number}" for number in range(1, 8)), "panda_hand", *FINGER_SIDES)
-"""The robot's bodies that move."""
-TOOL = "panda_grasptarget"
 LINK_FRICTION = 0.5
 """Of arm and hand, as PyBullet has it where nothing is said."""
 BLOCKS, ROBOT, GROUND, TRAYS = 1, 2, 4, 8
@@ -83,10 +79,11 @@ def specification(
         carriers: Poses of the carriers by name.
         made: Each block as it is.
     """
-    spec = mujoco.MjSpec.from_string(_robot_document())
+    robot = load_robot(tabletop.robot)
+    spec = mujoco.MjSpec.from_string(_robot_document(robot))
     spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE
     _set_options(spec)
-    _dress_robot(spec, tabletop.friction)
+    _dress_robot(spec, robot, tabletop.friction)
     top = spec.worldbody.add_geom(
         name="table", type=mujoco.mjtGeom.mjGEOM_BOX, size=[1.5, 1.5, 0.05], pos=[0.0, 0.0, -0.05]
     )
@@ -98,19 +95,19 @@ def specification(
         )
         _surface(box, tabletop.friction.block**2, 0, BLOCKS, BLOCKS | ROBOT | GROUND | TRAYS)
     if any(block.friction != tabletop.friction.block for block in made.values()):
-        _pair_blocks(spec, tabletop.friction, made)
+        _pair_blocks(spec, robot.hand.fingers, tabletop.friction, made)
     for name, pose in carriers.items():
-        _add_tray(spec, tabletop, carrier_body(name), pose)
+        _add_tray(spec, robot.hand.fingers, tabletop, carrier_body(name), pose)
     return spec
 
 
-@cache
-def _robot_document() -> str:
+@lru_cache(maxsize=16)
+def _robot_document(robot: Robot) -> str:
     """The URDF with what MuJoCo is told about reading it."""
-    robot = ET.fromstring(panda_text())
+    urdf = ET.fromstring(robot_text(robot))
     options = {"strippath": "false", "fusestatic": "false", "discardvisual": "true"}
-    ET.SubElement(ET.SubElement(robot, "mujoco"), "compiler", options)
-    return ET.tostring(robot, encoding="unicode")
+    ET.SubElement(ET.SubElement(urdf, "mujoco"), "compiler", options)
+    return ET.tostring(urdf, encoding="unicode")
 
 
 def _set_options(spec: Any) -> None:
@@ -123,28 +120,29 @@ def _set_options(spec: Any) -> None:
     option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_SLEEP)
 
 
-def _dress_robot(spec: Any, friction: Friction) -> None:
+def _dress_robot(spec: Any, robot: Robot, friction: Friction) -> None:
     """Give the robot its surfaces and motors; its weight is carried, as a real arm's controller does."""
+    hand = robot.hand
     for body in spec.bodies:
         if body.name == "world":
             continue
         body.gravcomp = 1.0
-        coefficient = friction.finger if body.name in FINGER_SIDES else LINK_FRICTION
-        for shape in body.geoms:
+        coefficient = friction.finger if body.name in hand.fingers else LINK_FRICTION
+        for number, shape in enumerate(body.geoms):
             _surface(shape, friction.block * coefficient, 1, ROBOT, BLOCKS | TRAYS)
-            if body.name in FINGER_SIDES:
+            if body.name in hand.fingers:
                 shape.solref = GRASP
-            shape.name = body.name
-            # Inertias follow from the shapes, as in PyBullet: those of the file are the same for all links.
-            shape.mass = body.mass
+            shape.name = body.name if number == 0 else f"{body.name} {number}"
+            # Inertias follow from the shapes, as in PyBullet: those of the file may be the same for all links.
+            shape.mass = body.mass / len(body.geoms)
     for joint in spec.joints:
-        if joint.name in FINGER_JOINTS:
+        if joint.name in hand.joints:
             # What the URDF calls effort would clamp the fingers' force below that of their motors.
-            joint.actfrcrange = [-FINGER_FORCE, FINGER_FORCE]
-    for name, force in zip(ARM_JOINTS, ARM_FORCE, strict=True):
-        _add_motor(spec, name, force).set_to_motor()
-    for name in FINGER_JOINTS:
-        _add_motor(spec, name, FINGER_FORCE).set_to_position(kp=FINGER_STIFFNESS, kv=FINGER_DAMPING)
+            joint.actfrcrange = [-hand.force, hand.force]
+    for name, force in zip(robot.joints, robot.force, strict=True):
+        _add_motor(spec, name, float(force)).set_to_motor()
+    for name in hand.joints:
+        _add_motor(spec, name, hand.force).set_to_position(kp=FINGER_STIFFNESS, kv=FINGER_DAMPING)
     # The fingers move as one: apart, they drift sideways together with the block that they squeeze.
     for tie in spec.equalities:
         tie.solref = GRASP
@@ -165,7 +163,7 @@ def _free_body(spec: Any, name: str, pose: BlockPose) -> Any:
     return body
 
 
-def _add_tray(spec: Any, tabletop: Tabletop, name: str, pose: BlockPose) -> None:
+def _add_tray(spec: Any, fingers: tuple[str, str], tabletop: Tabletop, name: str, pose: BlockPose) -> None:
     """One body of several boxes, its centre of mass in its frame's origin, the middle of the board."""
     tray = tabletop.tray
     assert tray is not None
@@ -175,32 +173,30 @@ def _add_tray(spec: Any, tabletop: Tabletop, name: str, pose: BlockPose) -> None
         part = f"{name} {number}"
         box = body.add_geom(name=part, type=mujoco.mjtGeom.mjGEOM_BOX, pos=centre, size=size)
         _surface(box, tray.friction * tabletop.friction.block, 1, TRAYS, BLOCKS | ROBOT | GROUND)
-        for other, friction in (
-            ("table", tabletop.friction.table),
-            *((f, tabletop.friction.finger) for f in FINGER_SIDES),
-        ):
-            _pair(spec, part, other, tray.friction * friction)
+        _pair(spec, part, "table", tray.friction * tabletop.friction.table)
+        for finger in fingers:
+            _pair(spec, part, finger, tray.friction * tabletop.friction.finger, GRASP)
     body.explicitinertial = True
     body.mass = tray.mass
     body.ipos = np.zeros(3)
     body.inertia = _box_inertia(tray.mass, np.abs(centres).max(axis=0) + half.max(axis=0))
 
 
-def _pair_blocks(spec: Any, friction: Friction, made: Mapping[str, Made]) -> None:
+def _pair_blocks(spec: Any, fingers: tuple[str, str], friction: Friction, made: Mapping[str, Made]) -> None:
     """Give blocks of unlike friction the products of theirs, with each other, the table, the fingers."""
-    grounds = {"table": friction.table, **dict.fromkeys(FINGER_SIDES, friction.finger)}
     for name, block in made.items():
-        for ground, coefficient in grounds.items():
-            _pair(spec, block_body(name), ground, block.friction * coefficient)
+        _pair(spec, block_body(name), "table", block.friction * friction.table)
+        for finger in fingers:
+            _pair(spec, block_body(name), finger, block.friction * friction.finger, GRASP)
     for (name, block), (other, second) in combinations(made.items(), 2):
         _pair(spec, block_body(name), block_body(other), block.friction * second.friction)
 
 
-def _pair(spec: Any, first: str, second: str, friction: float) -> None:
+def _pair(spec: Any, first: str, second: str, friction: float, stiffness: tuple[float, float] = CONTACT) -> None:
     pair = spec.add_pair(geomname1=first, geomname2=second)
     pair.friction = [friction, friction, TORSION, ROLLING, ROLLING]
     pair.condim = 4
-    pair.solref = GRASP if second in FINGER_SIDES else CONTACT
+    pair.solref = stiffness
     pair.solimp = IMPEDANCE
 
 

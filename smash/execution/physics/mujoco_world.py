@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from smash.execution.physics import mujoco_model as models
-from smash.execution.physics.world import FINGER_SPEED, STEP, World
+from smash.execution.physics.world import STEP, World
 from smash.execution.scene.block_pose import BlockPose
-from smash.motion.robot import ARM_JOINTS
+from smash.motion.robots.composing import TOOL
 from smash.problem.errors import Unsupported
 
 STEPS, HOLDING_STEPS = round(STEP / models.TIME_STEP), round(STEP / models.HOLDING_STEP)
@@ -29,7 +29,7 @@ BANDWIDTH = 100.0
 
 
 class MujocoWorld(World):
-    """Panda, table and blocks in one MuJoCo model."""
+    """Robot, table and blocks in one MuJoCo model."""
 
     engine = "mujoco"
     model: Any
@@ -38,21 +38,23 @@ class MujocoWorld(World):
     def _open(self, blocks: Mapping[str, BlockPose], carriers: Mapping[str, BlockPose], gui: bool) -> None:
         if gui:
             raise Unsupported("there is no window with the engine mujoco; the engine pybullet has one")
+        robot = self.robot
         made = {name: self._as_made(name) for name in blocks}
         self.model = model = models.build(self.tabletop, blocks, carriers, made)
         self.data = mujoco.MjData(model)
         # What is looked at is worked out in data of its own: looking changes nothing.
         self._seen = mujoco.MjData(model)
-        self._arm = np.array([model.joint(name).qposadr[0] for name in ARM_JOINTS])
-        self._fingers = np.array([model.joint(name).qposadr[0] for name in models.FINGER_JOINTS])
-        self._motors = np.array([model.actuator(name).id for name in ARM_JOINTS])
-        self._finger_motors = np.array([model.actuator(name).id for name in models.FINGER_JOINTS])
-        self._wanted_position, self._wanted_velocity, self._last_velocity = self._target, np.zeros(7), np.zeros(7)
+        self._arm = np.array([model.joint(name).qposadr[0] for name in robot.joints])
+        self._fingers = np.array([model.joint(name).qposadr[0] for name in robot.hand.joints])
+        self._motors = np.array([model.actuator(name).id for name in robot.joints])
+        self._finger_motors = np.array([model.actuator(name).id for name in robot.hand.joints])
+        rest = np.zeros(robot.count)
+        self._wanted_position, self._wanted_velocity, self._last_velocity = self._target, rest, rest
         self._acceleration, self._force = np.zeros(model.nv), np.zeros(model.nv)
         self._blocks = {name: model.body(models.block_body(name)).id for name in blocks}
         self._carriers = {name: model.body(models.carrier_body(name)).id for name in carriers}
-        self._links = np.array([model.body(name).id for name in models.LINKS])
-        self._tool: int = model.body(models.TOOL).id
+        self._links = np.array([model.body(name).id for name in (*robot.links, robot.hand.root, *robot.hand.fingers)])
+        self._tool: int = model.body(TOOL).id
         self._free = [int(model.body_dofadr[body]) for body in (*self._blocks.values(), *self._carriers.values())]
         self._block_of = np.full(model.ngeom, -1)
         self._block_of[[model.geom(models.block_body(name)).id for name in blocks]] = np.arange(len(blocks))
@@ -68,7 +70,7 @@ class MujocoWorld(World):
         """Give nothing back: what is held goes with the object."""
 
     def _advance(self) -> None:
-        data, step = self.data, FINGER_SPEED * STEP
+        data, step = self.data, self.robot.hand.speed * STEP
         self._finger_target += min(step, max(-step, self.opening - self._finger_target))
         data.ctrl[self._finger_motors] = self._finger_target
         data.ctrl[self._motors] = self._torques()
@@ -78,7 +80,7 @@ class MujocoWorld(World):
         mujoco.mj_step(self.model, data, steps)
 
     def _torques(self) -> NDArray[np.float64]:
-        """What the arm's motors shall turn with for the next `STEP` [Nm], shape (7,)."""
+        """What the arm's motors shall turn with for the next `STEP` [Nm], shape (n,)."""
         data, velocity = self.data, self._wanted_velocity
         acceleration = (velocity - self._last_velocity) / STEP
         self._last_velocity = velocity
@@ -136,7 +138,7 @@ class MujocoWorld(World):
         return [BlockPose(seen.xpos[body].copy(), seen.xmat[body].reshape(3, 3).copy()) for body in bodies]
 
     def joints(self) -> NDArray[np.float64]:
-        """Measured arm joints [rad], shape (7,)."""
+        """Measured arm joints [rad], shape (n,)."""
         return np.array(self.data.qpos[self._arm])
 
     def fingers(self) -> NDArray[np.float64]:
@@ -144,11 +146,11 @@ class MujocoWorld(World):
         return np.array(self.data.qpos[self._fingers])
 
     def torques(self) -> NDArray[np.float64]:
-        """What the arm's motors turn with [Nm], shape (7,)."""
+        """What the arm's motors turn with [Nm], shape (n,)."""
         return np.array(self.data.actuator_force[self._motors])
 
     def links(self) -> NDArray[np.float64]:
-        """Position [m] and quaternion (x, y, z, w) of links 1 to 7, hand and fingers, shape (10, 7)."""
+        """Position [m] and quaternion (x, y, z, w) of links 1 to n, hand and fingers, shape (n + 3, 7)."""
         seen = self._look()
         return np.hstack([seen.xpos[self._links], np.roll(seen.xquat[self._links], -1, axis=1)])
 

@@ -15,25 +15,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from smash.execution.physics.simulated_robot import simulated_panda
+from smash.execution.physics.simulated_robot import simulated_robot
 from smash.execution.physics.window import furnish, require_display, words_to_stderr
-from smash.execution.physics.world import ARM_FORCE, FINGER_FORCE, FINGER_SPEED, STEP, World
+from smash.execution.physics.world import STEP, World
 from smash.execution.scene.block_pose import BlockPose, quaternion_of
+from smash.motion.robot import Robot
+from smash.motion.robots.composing import TOOL
 
 ITERATIONS = 50
 BASE = -1
-ARM = tuple(range(7))
-FINGERS = (9, 10)
-LINKS = (*ARM, 8, *FINGERS)
-"""Its numbers of the links that move: arm, hand, fingers."""
-TOOL_LINK = 11
 ASLEEP = 1e-5
 """A block whose squared speed [m2/s2 + rad2/s2] stays below this for two seconds is left out of the simulation until
 something awake touches it or what it stands with: piles do not creep, and most of the work is spared."""
 
 
 class PyBulletWorld(World):
-    """Panda, table and blocks in one PyBullet connection.
+    """Robot, table and blocks in one PyBullet connection.
 
     A step of the simulation is a `STEP`: one twice as long lets tall stacks drift by millimetres.
     """
@@ -70,18 +67,22 @@ class PyBulletWorld(World):
         c.changeDynamics(self._table, -1, lateralFriction=friction.table)
         c.changeVisualShape(self._table, -1, rgbaColor=[0.93, 0.91, 0.87, 1])
         unseen = 0 if gui else c.URDF_IGNORE_VISUAL_SHAPES
-        with simulated_panda() as urdf:
-            self.robot: int = c.loadURDF(str(urdf), useFixedBase=True, flags=unseen)
-        for finger in FINGERS:
-            c.changeDynamics(self.robot, finger, lateralFriction=friction.finger)
-        for joint in ARM:
-            c.resetJointState(self.robot, joint, float(self._target[joint]))
-        for finger in FINGERS:
-            c.resetJointState(self.robot, finger, self.opening)
+        with simulated_robot(self.robot) as urdf:
+            self._body: int = c.loadURDF(str(urdf), useFixedBase=True, flags=unseen)
+        self._arm, self._fingers = numbers_of(c, self._body, self.robot)
+        links = {_told(c.getJointInfo(self._body, link)[12]): link for link in range(c.getNumJoints(self._body))}
+        self._links = (*self._arm, links[self.robot.hand.root], *self._fingers)
+        self._tool = links[TOOL]
+        for finger in self._fingers:
+            c.changeDynamics(self._body, finger, lateralFriction=friction.finger)
+        for joint, angle in zip(self._arm, self._target, strict=True):
+            c.resetJointState(self._body, joint, float(angle))
+        for finger in self._fingers:
+            c.resetJointState(self._body, finger, self.opening)
         self._couple_fingers()
         # The base is bolted to the table; its contacts would cost more than all blocks'.
-        for link in (BASE, 0):
-            c.setCollisionFilterPair(self.robot, self._table, link, -1, 0)
+        for link in range(BASE, self._arm[0] + 1):
+            c.setCollisionFilterPair(self._body, self._table, link, -1, 0)
         box = c.createCollisionShape(c.GEOM_BOX, halfExtents=[side / 2] * 3)
         self.bodies: dict[str, int] = {}
         for name, pose in blocks.items():
@@ -99,7 +100,9 @@ class PyBulletWorld(World):
             self.bodies[name] = body
         self._named = {body: name for name, body in self.bodies.items()}
         self._advance_client = c.stepSimulation
-        self._send_arm = partial(c.setJointMotorControlArray, self.robot, ARM, c.POSITION_CONTROL, forces=ARM_FORCE)
+        self._send_arm = partial(
+            c.setJointMotorControlArray, self._body, self._arm, c.POSITION_CONTROL, forces=self.robot.force.tolist()
+        )
         self._hold()
         self._send_fingers()
 
@@ -117,10 +120,8 @@ class PyBulletWorld(World):
 
     def _couple_fingers(self) -> None:
         """Let the fingers move as one: apart, they drift sideways together with the block that they squeeze."""
-        c = self.client
-        gear = c.createConstraint(
-            self.robot, FINGERS[0], self.robot, FINGERS[1], c.JOINT_GEAR, [1, 0, 0], [0, 0, 0], [0, 0, 0]
-        )
+        c, (left, right) = self.client, self._fingers
+        gear = c.createConstraint(self._body, left, self._body, right, c.JOINT_GEAR, [1, 0, 0], [0, 0, 0], [0, 0, 0])
         c.changeConstraint(gear, gearRatio=-1, erp=0.2, maxForce=200)
 
     def _advance(self) -> None:
@@ -130,19 +131,19 @@ class PyBulletWorld(World):
         self._send_arm(targetPositions=position.tolist(), targetVelocities=velocity.tolist())
 
     def _send_fingers(self) -> None:
-        for finger in FINGERS:
+        for finger in self._fingers:
             self.client.setJointMotorControl2(
-                self.robot,
+                self._body,
                 finger,
                 self.client.POSITION_CONTROL,
                 targetPosition=self.opening,
-                force=FINGER_FORCE,
-                maxVelocity=FINGER_SPEED,
+                force=self.robot.hand.force,
+                maxVelocity=self.robot.hand.speed,
             )
 
     def in_contact(self) -> Iterator[str]:
         """The blocks that arm or hand touch now; one may be named several times."""
-        for point in self.client.getContactPoints(bodyA=self.robot):
+        for point in self.client.getContactPoints(bodyA=self._body):
             block = self._named.get(point[2])
             if block is not None and point[8] <= 0.0:
                 yield block
@@ -170,28 +171,38 @@ class PyBulletWorld(World):
         return BlockPose(np.array(position), rotation)
 
     def joints(self) -> NDArray[np.float64]:
-        """Measured arm joints [rad], shape (7,)."""
-        return self._states(ARM, 0)
+        """Measured arm joints [rad], shape (n,)."""
+        return self._states(self._arm, 0)
 
     def fingers(self) -> NDArray[np.float64]:
         """Measured place of each finger, from the middle [m], shape (2,)."""
-        return self._states(FINGERS, 0)
+        return self._states(self._fingers, 0)
 
     def torques(self) -> NDArray[np.float64]:
-        """What the arm's motors turn with [Nm], shape (7,)."""
-        return self._states(ARM, 3)
+        """What the arm's motors turn with [Nm], shape (n,)."""
+        return self._states(self._arm, 3)
 
     def _states(self, joints: Iterable[int], entry: int) -> NDArray[np.float64]:
-        return np.array([state[entry] for state in self.client.getJointStates(self.robot, joints)])
+        return np.array([state[entry] for state in self.client.getJointStates(self._body, joints)])
 
     def links(self) -> NDArray[np.float64]:
-        """Position [m] and quaternion (x, y, z, w) of links 1 to 7, hand and fingers, shape (10, 7)."""
-        states = self.client.getLinkStates(self.robot, LINKS, computeForwardKinematics=True)
+        """Position [m] and quaternion (x, y, z, w) of links 1 to n, hand and fingers, shape (n + 3, 7)."""
+        states = self.client.getLinkStates(self._body, self._links, computeForwardKinematics=True)
         return np.array([[*state[4], *state[5]] for state in states])
 
     def tool_position(self) -> NDArray[np.float64]:
         """Measured position of the tool frame [m], shape (3,)."""
-        return np.array(self.client.getLinkState(self.robot, TOOL_LINK, computeForwardKinematics=True)[4])
+        return np.array(self.client.getLinkState(self._body, self._tool, computeForwardKinematics=True)[4])
+
+
+def numbers_of(client: Any, body: int, robot: Robot) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """PyBullet's numbers of a robot's joints: of the arm, and of the fingers."""
+    joints = {_told(client.getJointInfo(body, number)[1]): number for number in range(client.getNumJoints(body))}
+    return tuple(joints[name] for name in robot.joints), tuple(joints[name] for name in robot.hand.joints)
+
+
+def _told(name: bytes) -> str:
+    return name.decode()
 
 
 def connect(gui: bool) -> Any:

@@ -19,16 +19,11 @@ from smash.execution.scene.block_pose import BlockPose
 from smash.execution.scene.noise import Made
 from smash.execution.scene.tabletop import Tabletop
 from smash.motion.obstacles import BodyName
+from smash.motion.robots import load_robot
 from smash.motion.timing import Trajectory
 
 STEP = 1 / 480
 """Time between two set-points of the arm [s]; an engine may make several steps of it."""
-ARM_FORCE = (87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)
-"""The most that the motors of the arm may turn with [Nm]."""
-FINGER_FORCE = 40.0
-"""The most that a finger may push with [N]."""
-FINGER_SPEED = 0.2
-"""The most that a finger moves at [m/s]."""
 CONTACTS_EVERY = 4
 """Steps from one look at what the arm touches to the next."""
 STILL_LINEAR = 0.003
@@ -45,7 +40,7 @@ class World(ABC):
     Args:
         tabletop: The scene.
         blocks: Poses of the blocks at the start, by name.
-        ready: The arm at the start [rad], shape (7,).
+        ready: The arm at the start [rad], shape (n,).
         carriers: Poses of the carriers.
         gui: Open a window.
         on_frame: Called with the world, `frame_interval` of simulated time apart.
@@ -53,9 +48,10 @@ class World(ABC):
 
     Attributes:
         engine: What it is called at the command line and in records.
+        robot: The scene's robot, which has n joints.
         time: Simulated time [s].
         opening: Where the fingers are sent, from the middle [m].
-        recorded: What arm [rad], shape (7,), and fingers [m from the middle] were sent to, with the time [s] of each
+        recorded: What arm [rad], shape (n,), and fingers [m from the middle] were sent to, with the time [s] of each
             step.
         meant: What the arm may touch at present.
         on_step: Called after each step of the simulation, for measurements.
@@ -80,8 +76,9 @@ class World(ABC):
     ) -> None:
         self.tabletop = tabletop
         self._made = made or {}
+        self.robot = load_robot(tabletop.robot)
         self.time = 0.0
-        self.opening = 0.04
+        self.opening = self.robot.hand.opening
         self._on_frame = on_frame
         self._frame_interval = frame_interval
         self._next_frame = 0.0
@@ -124,7 +121,7 @@ class World(ABC):
 
     @abstractmethod
     def _send(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> None:
-        """Set where the arm's motors pull to [rad] and at which speed [rad/s], both of shape (7,)."""
+        """Set where the arm's motors pull to [rad] and at which speed [rad/s], both of shape (n,)."""
 
     @abstractmethod
     def _send_fingers(self) -> None:
@@ -152,7 +149,7 @@ class World(ABC):
 
     @abstractmethod
     def joints(self) -> NDArray[np.float64]:
-        """Measured arm joints [rad], shape (7,)."""
+        """Measured arm joints [rad], shape (n,)."""
 
     @abstractmethod
     def fingers(self) -> NDArray[np.float64]:
@@ -160,11 +157,11 @@ class World(ABC):
 
     @abstractmethod
     def torques(self) -> NDArray[np.float64]:
-        """What the arm's motors turn with [Nm], shape (7,)."""
+        """What the arm's motors turn with [Nm], shape (n,)."""
 
     @abstractmethod
     def links(self) -> NDArray[np.float64]:
-        """Position [m] and quaternion (x, y, z, w) of links 1 to 7, hand and fingers, shape (10, 7)."""
+        """Position [m] and quaternion (x, y, z, w) of links 1 to n, hand and fingers, shape (n + 3, 7)."""
 
     @abstractmethod
     def tool_position(self) -> NDArray[np.float64]:
@@ -242,5 +239,5 @@ class World(ABC):
         )
 
     def commanded(self) -> NDArray[np.float64]:
-        """The joint positions that the arm was last sent to [rad], shape (7,)."""
+        """The joint positions that the arm was last sent to [rad], shape (n,)."""
         return self._target.copy()

@@ -13,6 +13,7 @@ from math import cos, hypot, pi, sin
 
 from smash.execution.scene.block_pose import QUARTER, BlockPose
 from smash.execution.scene.tray import Tray
+from smash.motion.robots import load_robot
 from smash.problem.errors import SmashError
 from smash.problem.model import Instance, OnGoal
 
@@ -26,9 +27,6 @@ DIRECTIONS: Mapping[str, float] = {
 
 SLOWEST = 0.01
 """The least share of the arm's limits that motions may use: an episode would take an hour of simulated time."""
-
-HIGHEST = 12
-"""The most blocks of 4.5 cm that the arm can stack from above within its joint limits; other sizes in proportion."""
 
 
 class DoesNotFit(SmashError):
@@ -137,6 +135,7 @@ class Tabletop:
         stations: Slots that trays can stand at, their length across the bearing.
         noise: What an episode does not know exactly.
         engine: What simulates it where nothing else is named; no part of the fingerprint.
+        robot: Name or file of the robot that stands at it, None for the default one; no part of the fingerprint.
     """
 
     name: str
@@ -151,6 +150,7 @@ class Tabletop:
     stations: tuple[Slot, ...] = ()
     noise: Noise = field(default=Noise(), repr=False)
     engine: str | None = field(default=None, repr=False)
+    robot: str | None = field(default=None, repr=False)
 
     @property
     def slots(self) -> tuple[Slot, ...]:
@@ -166,7 +166,7 @@ class Tabletop:
     @property
     def highest(self) -> int:
         """The most blocks of a pile that the arm can work on from above."""
-        return int(HIGHEST * 0.045 / self.side)
+        return int(load_robot(self.robot).tallest / self.side)
 
     def bind(self, instance: Instance) -> dict[str, Slot]:
         """Give every location of `instance` its slot, in order.

@@ -8,7 +8,7 @@ that the hand, its thin side along x, sets a block down beside it.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from math import atan2
 
@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from smash.execution.scene.block_pose import BlockPose, standing
-from smash.motion.collision import FINGER_CORNERS, HAND_CORNERS
 from smash.motion.obstacles import CarrierBody, Scene
-from smash.motion.robot import FINGERTIP_BEYOND_TOOL
+from smash.motion.robot import Hand
+from smash.motion.robots import load_robot
 
 BESIDE_POST = 0.012
 """Room between the hand and the post while a block is set down beside it [m]."""
@@ -45,6 +45,7 @@ class Tray:
         post: The post's side [m].
         mass: [kg].
         friction: Coulomb coefficient; at a contact it multiplies with that of the other body.
+        robot: Whose hand it is made for; no part of what tells scenes apart.
     """
 
     side: float
@@ -54,6 +55,11 @@ class Tray:
     post: float = 0.022
     mass: float = 0.25
     friction: float = 0.9
+    robot: str | None = field(default=None, repr=False)
+
+    @property
+    def _hand(self) -> Hand:
+        return load_robot(self.robot).hand
 
     @property
     def capacity(self) -> int:
@@ -63,7 +69,7 @@ class Tray:
     @property
     def post_height(self) -> float:
         """Of the post above the board [m]."""
-        return self.side + OVER_BLOCKS + FINGERTIP_BEYOND_TOOL + GRIP_DEPTH
+        return self.side + OVER_BLOCKS + self._hand.tip + GRIP_DEPTH
 
     @property
     def size(self) -> tuple[float, float]:
@@ -74,12 +80,12 @@ class Tray:
     @property
     def _column(self) -> float:
         """Distance of a column of cells from the post's middle [m]."""
-        return float(HAND_CORNERS[1, 0]) + self.post / 2 + BESIDE_POST
+        return float(self._hand.palm[1, 0]) + self.post / 2 + BESIDE_POST
 
     @property
     def _pitch(self) -> float:
         """Distance between the rows [m]."""
-        return self.side + float(FINGER_CORNERS[1, 1]) + BESIDE_BLOCK
+        return self.side + float(self._hand.finger[1, 1]) + BESIDE_BLOCK
 
     @cached_property
     def cells(self) -> NDArray[np.float64]:

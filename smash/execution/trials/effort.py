@@ -15,10 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from smash.execution.executor import Executor
-from smash.execution.physics.world import ARM_FORCE, STEP, World
+from smash.execution.physics.world import STEP, World
 from smash.execution.policy import OPEN
 from smash.execution.scene.scene_file import default_scene
-from smash.motion.robot import ACCELERATION, JERK, VELOCITY
+from smash.motion.robot import Robot
+from smash.motion.robots import load_robot
 from smash.problem.extras import ENGINES
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import read_plan
@@ -33,18 +34,20 @@ class Effort:
     """Samples of every step of an episode; give `begin` to the executor as `on_frame`.
 
     Attributes:
-        sent: Joints that the arm was sent to [rad], rows of shape (7,).
+        sent: Joints that the arm was sent to [rad], rows of shape (n,).
         measured: Joints that it had [rad].
         torques: Of its motors [Nm].
+        robot: Whose.
     """
 
     sent: list[NDArray[np.float64]] = field(default_factory=list)
     measured: list[NDArray[np.float64]] = field(default_factory=list)
     torques: list[NDArray[np.float64]] = field(default_factory=list)
+    robot: Robot = field(default_factory=load_robot)
 
     def begin(self, world: World) -> None:
         """Sample from now on."""
-        world.on_step = self._sample
+        world.on_step, self.robot = self._sample, world.robot
 
     def _sample(self, world: World) -> None:
         self.sent.append(world.recorded[-1][1])
@@ -58,13 +61,18 @@ class Effort:
         rows = [
             (f"greatest {word}, share of its limit", f"{_greatest(sent, order, limit):.2f}")
             for order, (word, limit) in enumerate(
-                (("velocity", VELOCITY), ("acceleration", ACCELERATION), ("jerk", JERK)), start=1
+                (
+                    ("velocity", self.robot.velocity),
+                    ("acceleration", self.robot.acceleration),
+                    ("jerk", self.robot.jerk),
+                ),
+                start=1,
             )
         ]
         return [
             *rows,
             ("greatest lag behind what is sent [mrad]", f"{1e3 * np.abs(sent - measured).max():.1f}"),
-            ("greatest torque, share of its limit", f"{(np.abs(torques) / ARM_FORCE).max():.2f}"),
+            ("greatest torque, share of its limit", f"{(np.abs(torques) / self.robot.force).max():.2f}"),
             ("torque rate, 99.9 % of the steps are below [Nm/s]", f"{np.quantile(rates.max(axis=1), 0.999):.0f}"),
             ("greatest torque rate [Nm/s]", f"{rates.max():.0f}"),
             ("steps above 1,000 Nm/s [%]", f"{100 * (rates.max(axis=1) > TORQUE_RATE).mean():.2f}"),

@@ -31,7 +31,8 @@ from smash.motion.obstacles import Scene
 from smash.motion.paths import Path
 from smash.motion.planner import MotionPlanner
 from smash.motion.poses import top_down
-from smash.motion.robot import LOWER, READY, UPPER
+from smash.motion.robot import Robot
+from smash.motion.robots import load_robot
 from smash.problem.errors import ExecutionFailure
 from smash.problem.making import make_instance
 from smash.problem.model import Instance, PositionsGoal, State
@@ -64,8 +65,8 @@ class Tally:
 class TimedPlanner(MotionPlanner):
     """A motion planner that tells a tally what each answer took."""
 
-    def __init__(self, tally: Tally, seed: int) -> None:
-        super().__init__(seed=seed)
+    def __init__(self, robot: Robot, tally: Tally, seed: int) -> None:
+        super().__init__(robot, seed=seed)
         self._tally = tally
 
     def plan(self, *arguments: Any, **settings: Any) -> Path:
@@ -112,7 +113,7 @@ def run(tables: int, blocks: int, seed: int) -> Tally:
     """Plan a pick, a place and a topple on each of so many random tables."""
     tally = Tally()
     arm = ArmMotions(default_scene(), seed)
-    arm.planner = TimedPlanner(tally, seed)
+    arm.planner = TimedPlanner(arm.robot, tally, seed)
     for number in range(tables):
         generator = np.random.default_rng([seed, number])
         instance, where = random_table(generator, blocks)
@@ -132,7 +133,7 @@ def _pick_and_place(
     target = str(generator.choice([q for q in instance.locations if not instance.start[q] or piles[q][-1] != block]))
     grounder, scene = Grounder(arm), arm.scene(where.blocks)
     begun = process_time()
-    segments, grasp = grounder.pick_and_place.pick(READY, block, where.blocks[block], scene)
+    segments, grasp = grounder.pick_and_place.pick(arm.robot.ready, block, where.blocks[block], scene)
     lifted = _count("pick", begun, segments, scene, tally)
     stand = grounder.stand(target, State.start_of(instance), where)
     begun = process_time()
@@ -148,12 +149,14 @@ def _topple(arm: ArmMotions, instance: Instance, where: Geometry, generator: np.
     pile = instance.start[location]
     height = int(generator.integers(1, len(pile) + 1))
     begun = process_time()
-    segments = topple(arm, READY, where.slots[location], pile, height, where.blocks, None, frozenset(instance.table))
+    segments = topple(
+        arm, arm.robot.ready, where.slots[location], pile, height, where.blocks, None, frozenset(instance.table)
+    )
     _count("topple", begun, segments, arm.scene(where.blocks), tally)
 
 
 def _count(what: str, begun: float, segments: Sequence[Segment], scene: Scene, tally: Tally) -> Any:
-    """Count an action's planning and its motions; return where the arm is afterwards [rad], shape (7,)."""
+    """Count an action's planning and its motions; return where the arm is afterwards [rad], shape (n,)."""
     tally.add(what, process_time() - begun)
     moves = [segment for segment in segments if isinstance(segment, Move)]
     tally.add(f"a motion of a {what}", tally.seconds[what][-1] / len(moves))
@@ -164,7 +167,8 @@ def _count(what: str, begun: float, segments: Sequence[Segment], scene: Scene, t
 def touching(tally: Tally, step: float = 0.01) -> int:
     """How many of the timed motions touch what they should not, asked of the hulls every `step` [s]."""
     return sum(
-        HullChecker(scene.without(move.ignored), move.hand, TOUCH).contact(move.trajectory.sample(step)) is not None
+        HullChecker(move.robot, scene.without(move.ignored), move.hand, TOUCH).contact(move.trajectory.sample(step))
+        is not None
         for move, scene in tally.moves
     )
 
@@ -173,10 +177,11 @@ def compare_checkers(states: int, seed: int) -> Counter[tuple[bool, bool]]:
     """(free by the spheres, free by the hulls) of random configurations on a random table, a block in the hand."""
     generator = np.random.default_rng(seed)
     arm = ArmMotions(default_scene())
+    robot = arm.robot
     scene, hand = arm.scene(random_table(generator, 9)[1].blocks), CENTRED.hand(arm.side)
-    fast, exact = CollisionChecker(scene, hand, 0.0), HullChecker(scene, hand, 0.0)
+    fast, exact = CollisionChecker(robot, scene, hand, 0.0), HullChecker(robot, scene, hand, 0.0)
     verdicts: Counter[tuple[bool, bool]] = Counter()
-    for joints in generator.uniform(LOWER, UPPER, (states, 7)):
+    for joints in generator.uniform(robot.lower, robot.upper, (states, robot.count)):
         verdicts[fast.free(joints), exact.contact(joints) is None] += 1
     return verdicts
 
@@ -184,13 +189,13 @@ def compare_checkers(states: int, seed: int) -> Counter[tuple[bool, bool]]:
 def solve_targets(count: int, seed: int) -> tuple[int, list[float]]:
     """How many of so many random top-down targets in reach have a solution, and the CPU times [s]."""
     generator = np.random.default_rng(seed)
-    solved, seconds = 0, []
+    solved, seconds, robot = 0, [], load_robot()
     for _ in range(count):
         radius, angle = generator.uniform(0.30, 0.65), generator.uniform(-2.8, 2.8)
         point = [radius * np.cos(angle), radius * np.sin(angle), generator.uniform(0.02, 0.42)]
         pose = top_down(point, generator.uniform(-np.pi, np.pi))
         begun = process_time()
-        solved += bool(inverse(pose))
+        solved += bool(inverse(robot, pose))
         seconds.append(process_time() - begun)
     return solved, seconds
 

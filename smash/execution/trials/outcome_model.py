@@ -12,7 +12,7 @@ from smash.execution.scene.tabletop import Slot, Tabletop
 from smash.forecast.durations import TimedMove, fit
 from smash.forecast.expected import Forecaster
 from smash.forecast.model import Landed, MoveTimes, OutcomeModel, Spot, Toppled
-from smash.motion.robot import READY, panda
+from smash.motion.robots import load_robot
 from smash.problem.actions.topple import Topple
 from smash.problem.errors import SmashError
 from smash.problem.making import make_instance
@@ -62,8 +62,8 @@ def outcome_model(tabletop: Tabletop, trials: Iterable[Trial], *, rounds: int = 
         engine=engines.pop(),
         side=tabletop.side,
         highest=tabletop.highest,
-        ready=_ready()[0],
-        ready_height=_ready()[1],
+        ready=_ready(tabletop)[0],
+        ready_height=_ready(tabletop)[1],
         stacks=tuple(map(_spot, tabletop.stacks)),
         buffers=tuple(map(_spot, tabletop.buffers)),
         moves=MoveTimes({}, 0.0, 0.0, 1),
@@ -144,9 +144,10 @@ def _random_actions(problem: Problem, generator: np.random.Generator) -> Iterato
         yield do(Place(pick.block, toppled if rebuilt and toppled else str(generator.choice(targets))))
 
 
-def _ready() -> tuple[Spot, float]:
+def _ready(tabletop: Tabletop) -> tuple[Spot, float]:
     """Where the hand is at the arm's ready pose, and how high."""
-    x, y, z = (float(value) for value in panda().forward(READY).position)
+    robot = load_robot(tabletop.robot)
+    x, y, z = (float(value) for value in robot.forward(robot.ready).position)
     return Spot(round(float(np.hypot(x, y)), DIGITS), round(float(np.arctan2(y, x)), DIGITS)), round(z, DIGITS)
 
 

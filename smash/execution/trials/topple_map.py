@@ -28,7 +28,6 @@ from smash.execution.scene.tabletop import Slot, Tabletop
 from smash.execution.sight import Sight
 from smash.execution.trials.estimates import Estimates, Rate
 from smash.motion.poses import Vector
-from smash.motion.robot import READY
 from smash.problem.actions.topple import Topple
 from smash.problem.errors import ExecutionFailure
 from smash.problem.making import make_instance
@@ -69,7 +68,7 @@ def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: i
         falling=falling,
         seed=seed,
     )
-    with world_of(engine)(chance.scene(), poses, READY, made=chance.made) as world:
+    with world_of(engine)(chance.scene(), poses, arm.robot.ready, made=chance.made) as world:
         world.settle()
         before, begun = world.poses(), world.time
         performer = Performer(world, Grounder(arm), Geometry(slots), OPEN, Sight(world, chance))

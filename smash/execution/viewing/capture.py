@@ -94,9 +94,9 @@ class Capture:
         recorded = executor.world.recorded
         if self._for_ros:
             end = executor.world.time, executor.ended
-            write_bag(path, recorded, self.recording, end, executor.tabletop, episode)
+            write_bag(path, executor.arm.robot, recorded, self.recording, end, executor.tabletop, episode)
         else:
-            write_trajectory(path, thinned(recorded))
+            write_trajectory(path, executor.arm.robot.joints, thinned(recorded))
 
     def _write_stills(self, path: Path, tabletop: Tabletop, episode: Episode) -> None:
         from smash.execution.viewing.pictures import write_stills

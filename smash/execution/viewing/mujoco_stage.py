@@ -28,7 +28,7 @@ from smash.execution.viewing.stage import (
     block_colours,
     slot_look,
 )
-from smash.motion.robot import ARM_JOINTS
+from smash.motion.robots import load_robot
 from smash.problem.errors import Unsupported
 from smash.problem.words import one_line
 
@@ -68,7 +68,8 @@ class MujocoStage(Stage):
         self._names += [models.carrier_body(str(number)) for number in range(carriers)]
         self.model = model = self._model(tabletop, blocks, carriers)
         self.data: Any = mujoco.MjData(model)
-        joints = (*ARM_JOINTS, *models.FINGER_JOINTS)
+        robot = load_robot(tabletop.robot)
+        joints = (*robot.joints, *robot.hand.joints)
         self._joints = np.array([model.joint(name).qposadr[0] for name in joints])
         self._bodies = [int(model.jnt_qposadr[model.body(name).jntadr[0]]) for name in self._names]
         self._context = open_context((64, 64))

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from smash.execution.physics.pybullet_world import ARM, FINGERS, connect
+from smash.execution.physics.pybullet_world import connect, numbers_of
+from smash.execution.physics.simulated_robot import urdf_file
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.viewing.recording import Recording
 from smash.execution.viewing.stage import (
@@ -24,7 +25,7 @@ from smash.execution.viewing.stage import (
     block_colours,
     slot_look,
 )
-from smash.motion.robot import panda_urdf
+from smash.motion.robots import load_robot
 
 
 class PyBulletStage(Stage):
@@ -34,7 +35,10 @@ class PyBulletStage(Stage):
 
     def _open(self, tabletop: Tabletop, blocks: int, carriers: int) -> None:
         self.client = c = connect(gui=False)
-        self.robot = int(c.loadURDF(str(panda_urdf()), useFixedBase=True))
+        robot = load_robot(tabletop.robot)
+        with urdf_file(robot.urdf) as urdf:
+            self.robot = int(c.loadURDF(str(urdf), useFixedBase=True))
+        self._joints = [number for numbers in numbers_of(c, self.robot, robot) for number in numbers]
         self._box(TABLE_HALF, [0, 0, -TABLE_HALF[2]], TABLE_COLOUR)
         for slot in tabletop.slots:
             half, colour = slot_look(slot, tabletop.side)
@@ -71,7 +75,7 @@ class PyBulletStage(Stage):
 
     def pose(self, recording: Recording, frame: int) -> None:
         """Move everything to where it was in a frame."""
-        for joint, value in zip((*ARM, *FINGERS), recording.joints[frame], strict=True):
+        for joint, value in zip(self._joints, recording.joints[frame], strict=True):
             self.client.resetJointState(self.robot, joint, float(value))
         moved = np.concatenate([recording.blocks[frame], recording.trays[frame]])
         for body, row in zip((*self.blocks, *self.trays), moved, strict=True):

@@ -21,8 +21,8 @@ class Recording:
 
     Attributes:
         times: [s], one per frame.
-        joints: Arm and finger joints per frame, shape (9,) [rad, m].
-        links: Position and quaternion of links 1 to 7, hand and fingers per frame, shape (10, 7) [m]; the base stands.
+        joints: Arm and finger joints per frame, shape (n + 2,) [rad, m].
+        links: Position and quaternion of links 1 to n, hand and fingers per frame, shape (n + 3, 7) [m].
         blocks: Position and quaternion (x, y, z, w) of the blocks per frame, shape (B, 7) [m].
         trays: The same of the carriers, shape (C, 7).
         touched: The blocks that arm or hand touch, by their places in that order, per frame.

@@ -7,8 +7,6 @@ import html
 import json
 import re
 from collections.abc import Mapping, Sequence
-from functools import cache
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -18,15 +16,13 @@ from numpy.typing import NDArray
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.viewing.recording import Recording
 from smash.execution.viewing.stage import block_colours
-from smash.motion.robot import panda_urdf
+from smash.motion.robots import load_robot
+from smash.motion.robots.meshes import drawn_parts
 from smash.problem.files.documents import write_text
 from smash.problem.model import Goal, Instance, OnGoal, PositionsGoal, StacksGoal, no_goal
 from smash.records.episodes import Episode
 
 TEMPLATE = Path(__file__).parent / "replay.html"
-MESHES = ("link0", *(f"link{number}" for number in range(1, 8)), "hand", "finger", "finger")
-"""Mesh of each drawn part: base, the arm's links, hand, left and right finger."""
-
 POSE_UNIT = 0.00006
 """Of positions [m] and of quaternions: what lies further away than 1.97 m is shown there."""
 BESIDE = 0.02
@@ -49,7 +45,7 @@ def write_replay(path: Path, recording: Recording, tabletop: Tabletop, episode: 
         "places": _places(tabletop, instance),
         "blocks": instance.blocks,
         "colours": block_colours(len(instance.blocks)),
-        "meshes": [_packed(_mesh(name)) for name in MESHES],
+        "meshes": [_packed(part) for part in drawn_parts(load_robot(tabletop.robot))],
         "times": _packed(np.array(recording.times)),
         "links": _poses(recording.links),
         "poses": _poses(recording.blocks),
@@ -116,18 +112,3 @@ def _poses(frames: Sequence[NDArray[np.float64]]) -> str:
     """Positions and quaternions of all frames in 16 bits each, a twentieth of a millimetre: half of the page's size."""
     numbers = np.clip(np.rint(np.array(frames) / POSE_UNIT), -32767, 32767)
     return base64.b64encode(np.ascontiguousarray(numbers, dtype="<i2").tobytes()).decode("ascii")
-
-
-@cache
-def _mesh(name: str) -> NDArray[np.float64]:
-    """Triangles of a collision mesh, shape (T, 9) [m]."""
-    vertices: list[list[float]] = []
-    triangles: list[list[float]] = []
-    for line in (panda_urdf().parent / "meshes" / "collision" / f"{name}.obj").read_text().splitlines():
-        parts = line.split()
-        if parts[:1] == ["v"]:
-            vertices.append([float(value) for value in parts[1:4]])
-        elif parts[:1] == ["f"]:
-            corners = [vertices[int(part.split("/")[0]) - 1] for part in parts[1:]]
-            triangles += [[*corners[0], *second, *third] for second, third in pairwise(corners[1:])]
-    return np.array(triangles)

@@ -3,9 +3,10 @@
 Foxglove and rosbag2 read it as it is. Time begins at 0 with the episode, in simulated seconds; equal episodes make
 equal files. The topics:
 
-- `/panda_arm_controller/joint_trajectory`: what the arm was sent to, a message an action, at the moment at which it
-  began. Each starts where the one before ended, at rest, and has the stamp 0, which a controller takes for "now".
-- `/panda_hand_controller/joint_trajectory`: where the fingers were sent to meanwhile.
+- `/ROBOT_arm_controller/joint_trajectory` (the robot's name): what the arm was sent to, a message an action, at the
+  moment at which it began. Each starts where the one before ended, at rest, and has the stamp 0, which a controller
+  takes for "now".
+- `/HAND_controller/joint_trajectory` (the hand's name): where the fingers were sent to meanwhile.
 - `/joint_states`: arm and fingers as measured.
 - `/tf`: blocks and carriers as they were, as frames of their names in the robot's base; the last message is the
   episode's end.
@@ -41,19 +42,24 @@ from smash.execution.viewing.ros_messages import (
 )
 from smash.execution.viewing.stage import TRAY_COLOUR, block_colours
 from smash.execution.viewing.trajectory_file import Sample, thinned
-from smash.motion.robot import ARM_JOINTS
+from smash.motion.robot import Robot
 from smash.problem.files.documents import one_key_a_line
 from smash.records.episodes import Episode
 
-ARM = "/panda_arm_controller/joint_trajectory"
-HAND = "/panda_hand_controller/joint_trajectory"
 JOINTS = "/joint_states"
 POSES = "/tf"
 SHAPES = "/blocks"
 ACTION = "/action"
-BASE = "panda_link0"
-"""The frame that poses are given in: the robot's base stands where the scene's x and y begin, on the table."""
-FINGER_JOINTS = ("panda_finger_joint1", "panda_finger_joint2")
+
+
+def arm_topic(robot: Robot) -> str:
+    """Where an arm listens."""
+    return f"/{robot.name}_arm_controller/joint_trajectory"
+
+
+def hand_topic(robot: Robot) -> str:
+    """Where its hand does."""
+    return f"/{robot.hand.name}_controller/joint_trajectory"
 
 
 class _Sent(NamedTuple):
@@ -67,6 +73,7 @@ class _Sent(NamedTuple):
 
 def write_bag(
     path: str | os.PathLike[str],
+    robot: Robot,
     recorded: Sequence[Sample],
     recording: Recording,
     end: tuple[float, Geometry],
@@ -77,6 +84,7 @@ def write_bag(
 
     Args:
         path: The file; it is overwritten.
+        robot: Whose joints are sent.
         recorded: What arm and fingers were sent to, at every step of the simulation.
         recording: What was measured.
         end: The moment of the episode's end [s], and where things were then.
@@ -87,9 +95,9 @@ def write_bag(
 
     messages = [
         *_actions(episode),
-        *_trajectories(recorded, [row.begun for row in episode.actions]),
-        *_joint_states(recording),
-        *_poses(recording, *end),
+        *_trajectories(robot, recorded, [row.begun for row in episode.actions]),
+        *_joint_states(robot, recording),
+        *_poses(robot.base, recording, *end),
         _shapes(end[1], tabletop),
     ]
     with Path(path).open("wb") as stream, Writer(stream) as writer:
@@ -105,34 +113,36 @@ def _actions(episode: Episode) -> Iterator[_Sent]:
         yield _Sent(row.begun, ACTION, STRING, {"data": " ".join(map(str, row.action))})
 
 
-def _trajectories(recorded: Sequence[Sample], begun: Sequence[float]) -> Iterator[_Sent]:
+def _trajectories(robot: Robot, recorded: Sequence[Sample], begun: Sequence[float]) -> Iterator[_Sent]:
     """Cut what was sent where actions begin; what comes before the first is a part of nothing, and stands still."""
     times = np.array([time for time, *_ in recorded])
     first = [min(int(np.searchsorted(times, moment - 1e-9)), len(times) - 1) for moment in begun] or [0]
     for since, until in pairwise([*first, len(recorded) - 1]):
         span = recorded[since : until + 1]
-        yield _Sent(span[0][0], ARM, JOINT_TRAJECTORY, _arm(span))
-        yield _Sent(span[0][0], HAND, JOINT_TRAJECTORY, _fingers(span))
+        yield _Sent(span[0][0], arm_topic(robot), JOINT_TRAJECTORY, _arm(robot, span))
+        yield _Sent(span[0][0], hand_topic(robot), JOINT_TRAJECTORY, _fingers(robot, span))
 
 
-def _arm(span: Sequence[Sample]) -> dict[str, Any]:
+def _arm(robot: Robot, span: Sequence[Sample]) -> dict[str, Any]:
     """The arm between two rests, thinned; its speed [rad/s] is that of the full rows."""
     times, joints = np.array([sample[0] for sample in span]), np.array([sample[1] for sample in span])
     speeds = np.gradient(joints, times, axis=0) if len(span) > 1 else np.zeros_like(joints)
     speeds[[0, -1]] = 0.0
     chosen = [row for _, row in thinned((sample[0], row) for row, sample in enumerate(span))]
-    return _trajectory(ARM_JOINTS, times, joints, sorted({*chosen, len(span) - 1}), speeds)
+    return _trajectory(robot.base, robot.joints, times, joints, sorted({*chosen, len(span) - 1}), speeds)
 
 
-def _fingers(span: Sequence[Sample]) -> dict[str, Any]:
+def _fingers(robot: Robot, span: Sequence[Sample]) -> dict[str, Any]:
     """The fingers' steps: the moments before and after each, and both ends."""
     times, openings = np.array([sample[0] for sample in span]), np.array([sample[2] for sample in span])
     after = np.flatnonzero(np.diff(openings)) + 1
     chosen = sorted({0, len(span) - 1, *(after - 1).tolist(), *after.tolist()})
-    return _trajectory(FINGER_JOINTS, times, np.stack([openings, openings], axis=1), chosen)
+    both = np.stack([openings, openings], axis=1)
+    return _trajectory(robot.base, robot.hand.joints, times, both, chosen)
 
 
 def _trajectory(
+    base: str,
     names: Sequence[str],
     times: NDArray[np.float64],
     positions: NDArray[np.float64],
@@ -147,25 +157,28 @@ def _trajectory(
         }
         for row in chosen
     ]
-    return {"header": _header(0.0), "joint_names": list(names), "points": points}
+    return {"header": _header(0.0, base), "joint_names": list(names), "points": points}
 
 
-def _joint_states(recording: Recording) -> Iterator[_Sent]:
+def _joint_states(robot: Robot, recording: Recording) -> Iterator[_Sent]:
+    names = [*robot.joints, *robot.hand.joints]
     for moment, joints in zip(recording.times, recording.joints, strict=True):
-        content = {"header": _header(moment), "name": [*ARM_JOINTS, *FINGER_JOINTS], "position": joints.tolist()}
+        content = {"header": _header(moment, robot.base), "name": names, "position": joints.tolist()}
         yield _Sent(moment, JOINTS, JOINT_STATE, content)
 
 
-def _poses(recording: Recording, ended: float, where: Geometry) -> Iterator[_Sent]:
+def _poses(base: str, recording: Recording, ended: float, where: Geometry) -> Iterator[_Sent]:
     names = [*where.blocks, *where.carriers]
     for moment, blocks, trays in zip(recording.times, recording.blocks, recording.trays, strict=True):
         if moment < ended:
-            yield _frames(moment, names, [*blocks, *trays])
+            yield _frames(base, moment, names, [*blocks, *trays])
     poses = [*where.blocks.values(), *where.carriers.values()]
-    yield _frames(ended, names, [[*pose.position, *quaternion_of(pose.rotation)] for pose in poses])
+    yield _frames(base, ended, names, [[*pose.position, *quaternion_of(pose.rotation)] for pose in poses])
 
 
-def _frames(moment: float, names: Sequence[str], rows: Sequence[Sequence[float] | NDArray[np.float64]]) -> _Sent:
+def _frames(
+    base: str, moment: float, names: Sequence[str], rows: Sequence[Sequence[float] | NDArray[np.float64]]
+) -> _Sent:
     frames = []
     for name, row in zip(names, rows, strict=True):
         x, y, z, *turn = map(float, row)
@@ -173,7 +186,7 @@ def _frames(moment: float, names: Sequence[str], rows: Sequence[Sequence[float] 
             "translation": {"x": x, "y": y, "z": z},
             "rotation": dict(zip("xyzw", turn, strict=True)),
         }
-        frames.append({"header": _header(moment), "child_frame_id": name, "transform": transform})
+        frames.append({"header": _header(moment, base), "child_frame_id": name, "transform": transform})
     return _Sent(moment, POSES, TRANSFORMS, {"transforms": frames})
 
 
@@ -203,7 +216,7 @@ def _shapes(where: Geometry, tabletop: Tabletop) -> _Sent:
     return _Sent(0.0, SHAPES, MARKERS, {"markers": markers})
 
 
-def _header(moment: float, frame: str = BASE) -> dict[str, Any]:
+def _header(moment: float, frame: str) -> dict[str, Any]:
     return {"stamp": _time(moment), "frame_id": frame}
 
 
