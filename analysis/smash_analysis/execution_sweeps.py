@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 
 from smash.problem.errors import SmashError
 from smash.problem.words import counted
-from smash.records.engines import require_one_engine
+from smash.records.engines import require_one_engine, require_one_robot
 from smash.records.files import TRIALS
 from smash.records.scenes import DEFAULT
 from smash_analysis.command import fail
@@ -88,11 +88,13 @@ def read_trials(directories: Sequence[Path]) -> pd.DataFrame:
     Raises:
         MalformedFile: where a directory has none, or they are damaged.
         MixedEngines: where they were simulated by several engines.
+        MixedRobots: where they were done by several robots.
     """
-    rows, engines = [], []
+    rows, engines, robots = [], [], []
     for directory in directories:
         for trial in records_of(directory, TRIALS):
             engines.append(trial.engine)
+            robots.append(trial.robot)
             rows.append(
                 {
                     **{
@@ -103,6 +105,7 @@ def read_trials(directories: Sequence[Path]) -> pd.DataFrame:
                 }
             )
     require_one_engine(", ".join(map(str, directories)), "topples", engines)
+    require_one_robot(", ".join(map(str, directories)), "topples", robots)
     return pd.DataFrame(rows)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pandas as pd
 
 from smash.problem.words import counted
-from smash.records.engines import require_one_engine
+from smash.records.engines import require_one_engine, require_one_robot
 from smash.records.episodes import EpisodeRecord
 from smash.records.files import EPISODES
 from smash_analysis import command
@@ -61,13 +61,15 @@ def told_episodes(records: Sequence[EpisodeRecord], where: str = "the records") 
     An episode whose process ended without one has failure `crashed`, and the process's problem for a reason.
 
     Args:
-        records: Of one engine.
+        records: Of one engine and robot.
         where: They are from, for messages.
 
     Raises:
         MixedEngines: Where they are of several engines.
+        MixedRobots: Where they are of several robots.
     """
     require_one_engine(where, "episodes", (record.engine for record in records))
+    require_one_robot(where, "episodes", (record.robot for record in records))
     episodes = episodes_table(records)
     lost = episodes["failure"].isna() & ~episodes["success"]
     return episodes.assign(

@@ -18,9 +18,10 @@ from smash.problem.words import one_line
 COMMANDS: dict[str, tuple[str, str]] = {
     "generate": ("smash.cli.generate", "make random benchmark instances (single-goal, multi-goal)"),
     "plan": ("smash.cli.plan", "plan one instance and print or write the plan"),
-    "execute": ("smash.cli.execute", "carry a plan out: Panda, simulated, partially grounded"),
+    "execute": ("smash.cli.execute", "carry a plan out: a robot, simulated, partially grounded"),
     "episodes": ("smash.cli.episodes", "carry out every plan of a sweep"),
     "costs": ("smash.cli.costs", "fit the costs of actions to the durations of episodes"),
+    "robot": ("smash.cli.robot", "list the robots, check a robot file, fit its spheres, measure its reach"),
     "draw-scene": ("smash.cli.draw_scene", "draw the table to scale and check the paper's two conditions"),
     "topple-map": ("smash.cli.topple_map", "measure where toppled blocks land, and what topples succeed"),
     "validate": ("smash.cli.validate", "judge a plan by the law"),

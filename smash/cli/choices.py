@@ -60,6 +60,13 @@ engine_option = click.option(
 )
 
 
+robot_option = click.option(
+    "--robot",
+    metavar="NAME|FILE",
+    help="Robot, shipped or of a smash-robot/1 file (default: the scene's, else panda; `smash robot` lists them).",
+)
+
+
 def say_engine(engine: str, tabletop: Tabletop, named: str | None) -> None:
     """Say on standard error which engine is used, where neither the command line nor the scene names one."""
     if named is None and tabletop.engine is None:

@@ -7,18 +7,20 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
+from smash.cli.choices import robot_option
 from smash.problem.extras import require
 from smash.problem.files.documents import require_writable
 
 
 @click.command("draw-scene")
 @click.argument("scene", type=click.Path(path_type=Path), required=False)
+@robot_option
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Picture (.png, .pdf, .svg).")
 @click.option("--height", type=click.IntRange(1, 20), default=9, show_default=True, metavar="N", help="Full stacks.")
 @click.option(
     "--buffer-height", type=click.IntRange(1, 20), default=4, show_default=True, metavar="N", help="Full buffers."
 )
-def command(scene: Path | None, out: Path | None, height: int, buffer_height: int) -> None:
+def command(scene: Path | None, robot: str | None, out: Path | None, height: int, buffer_height: int) -> None:
     """Draw a scene file (default: the built-in scene) and check the paper's two conditions; exit 3 where one fails.
 
     \b
@@ -28,10 +30,10 @@ def command(scene: Path | None, out: Path | None, height: int, buffer_height: in
     require("smash draw-scene", "pinocchio")
     from smash.execution.layout.conditions import violations
     from smash.execution.layout.drawing import draw
-    from smash.execution.scene.scene_file import default_scene, read_scene
+    from smash.execution.scene.scene_file import scene_of
 
     require_writable(out)
-    tabletop = default_scene() if scene is None else read_scene(scene)
+    tabletop = scene_of(scene, robot=robot)
     if out is not None:
         if out.suffix not in (".png", ".pdf", ".svg"):
             raise click.BadParameter("a picture's name ends in .png, .pdf or .svg", param_hint="--out")

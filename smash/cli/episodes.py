@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from smash.cli.choices import PACE, dask_option, engine_option
+from smash.cli.choices import PACE, dask_option, engine_option, robot_option
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.episodes.asked import MOST_SEEDS, note_asked
 from smash.experiments.episodes.question import EpisodeRun
@@ -53,6 +53,7 @@ SECONDS_AN_EPISODE = 5.0
 )
 @click.option("--pace", "paces", type=PACE, multiple=True, metavar="SHARE", help="The same.")
 @engine_option
+@robot_option
 @click.option("--replays", is_flag=True, help="Write a 3D replay of each plan's first episode to RESULTS/replays.")
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="At a time.")
 @dask_option
@@ -66,6 +67,7 @@ def command(
     noises: tuple[str, ...],
     paces: tuple[float, ...],
     engine: str | None,
+    robot: str | None,
     replays: bool,
     jobs: int,
     dask: str | None,
@@ -96,7 +98,7 @@ def command(
         run
         for noise, pace in changes
         for run in episode_runs(
-            results, range(seeds), policies, file, labels, replays, noise=noise, pace=pace, engine=engine
+            results, range(seeds), policies, file, labels, replays, noise=noise, pace=pace, engine=engine, robot=robot
         )
     ]
     if replays:
@@ -115,7 +117,7 @@ def command(
         if dry_run:
             return
         for noise, pace in changes:
-            note_asked(results, seeds, policies, scene, labels, noise, pace, engine)
+            note_asked(results, seeds, policies, scene, labels, noise, pace, engine, robot)
         if left:
             with pool(jobs, dask, longest(LONGEST), partial(click.echo, err=True)) as there:
                 task = partial(run_episode, stop=stop) if there.here else run_episode

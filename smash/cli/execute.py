@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from smash.cli import fail
-from smash.cli.choices import budget_option, engine_option, noise_option, pace_option, say_engine
+from smash.cli.choices import budget_option, engine_option, noise_option, pace_option, robot_option, say_engine
 from smash.cli.signals import ended_by_signals
 from smash.experiments.episodes.executors import executor_of
 from smash.problem.extras import EXECUTION, require, require_engine
@@ -26,6 +26,7 @@ from smash.problem.files.plans import read_plan
 @noise_option
 @pace_option
 @engine_option
+@robot_option
 @click.option("--no-replan", is_flag=True, help="The paper's open pipeline: the first failure ends the episode.")
 @click.option("--replanner", metavar="NAME", help="Planner to replan with (default: the plan's own, else greedy).")
 @budget_option("of each replanning")
@@ -56,6 +57,7 @@ def command(
     noise: str | None,
     pace: float | None,
     engine: str | None,
+    robot: str | None,
     no_replan: bool,
     replanner: str | None,
     budget: float,
@@ -71,7 +73,7 @@ def command(
     gui: bool,
     out: Path | None,
 ) -> None:
-    """Carry PLAN out with the Panda in simulation and print the episode as JSON; exit 5 where the execution failed.
+    """Carry PLAN out in simulation and print the episode as JSON; exit 5 where the execution failed.
 
     \b
     Examples:
@@ -80,6 +82,7 @@ def command(
       smash execute examples/figure1.json plan.json --video film.mp4 --video-size 960x640 --video-speed 2
       smash execute examples/figure1.json plan.json --noise pose=3mm,yaw=2deg,friction=10% --pace 0.25
       smash execute examples/figure1.json plan.json --engine mujoco
+      smash execute examples/figure1.json plan.json --robot panda
       smash execute examples/figure1.json plan.json --trajectory episode.mcap
       smash execute examples/figure1.json plan.json --looks poses.jsonl
       smash execute examples/figure1.json plan.json --observer poses.jsonl
@@ -127,6 +130,7 @@ def command(
         replanner=replanner,
         budget=budget,
         engine=engine,
+        robot=robot,
         observer=observer,
         looks=capture.seen,
         gui=gui,

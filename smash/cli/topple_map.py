@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from smash.cli.choices import dask_option, engine_option, say_engine
+from smash.cli.choices import dask_option, engine_option, robot_option, say_engine
 from smash.cli.signals import stopped_by_signals
 from smash.problem.errors import SmashError
 from smash.problem.extras import EXECUTION, require
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 )
 @click.option("--scene", type=click.Path(path_type=Path), help="Scene file (default: the built-in scene).")
 @engine_option
+@robot_option
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="At a time.")
 @dask_option
 @click.option(
@@ -51,6 +52,7 @@ def command(
     first_seed: int,
     scene: Path | None,
     engine: str | None,
+    robot: str | None,
     jobs: int,
     dask: str | None,
     model: Path | None,
@@ -73,7 +75,7 @@ def command(
     """
     require("smash topple-map", *EXECUTION, "matplotlib")
     from smash.execution.physics.engines import engine_of
-    from smash.execution.scene.scene_file import default_scene, read_scene
+    from smash.execution.scene.scene_file import scene_of
     from smash.execution.trials.calibration import calibrations, require_comparable, table
     from smash.execution.trials.estimates import ENOUGH, TRUSTED, write_estimates
     from smash.execution.trials.outcome_model import outcome_model
@@ -89,7 +91,7 @@ def command(
     from smash.records.writing import Writer
 
     require_writable(model)
-    tabletop = default_scene() if scene is None else read_scene(scene)
+    tabletop = scene_of(scene, robot=robot)
     named, engine = engine, engine_of(tabletop, engine)
     say_engine(engine, tabletop, named)
     chosen_seeds = range(first_seed, first_seed + seeds)

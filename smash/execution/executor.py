@@ -13,6 +13,7 @@ from time import perf_counter
 
 import numpy as np
 
+from smash.execution.ability import require_able
 from smash.execution.actions.arm_motions import ArmMotions
 from smash.execution.errors import Blind, Fell, NotAtGoal
 from smash.execution.grounding import Grounder, Task
@@ -66,8 +67,9 @@ class Executor:
         ended: Where everything was at the episode's end.
 
     Raises:
-        DoesNotFit: where the scene has no room for the instance.
-        Unsupported: where a block is in the hand at the start, or the engine is not installed.
+        DoesNotFit: where the scene has no room for the instance, or the robot does not reach what the plan needs.
+        Unsupported: where the robot cannot do an action, a block is in the hand at the start, or the engine is not
+            installed.
     """
 
     def __init__(
@@ -101,6 +103,8 @@ class Executor:
         self.law = Law(instance, plan.options)
         self.table = Geometry(tabletop.bind(instance), tabletop.bind_stations(instance))
         self.arm = ArmMotions(tabletop, seed)
+        places = {**self.table.slots, **self.table.stations}
+        require_able(self.arm.robot, tabletop, self.law, plan.actions or (), places)
         self.chance = Chance(tabletop, instance, seed)
         self.grounder = Grounder(self.arm, self.chance.astray)
         self.performed: list[Performed] = []
@@ -339,6 +343,7 @@ class Executor:
             max_topple=self.plan.options.max_topple,
             scene=self.tabletop.name,
             engine=self.engine,
+            robot=self.arm.robot.label,
             seed=self.seed,
             replanning=self.policy.replans > 0,
             success=failure is None,

@@ -27,10 +27,10 @@ def execute(
     noise: str | None = None,
     pace: float | None = None,
     engine: str | None = None,
-    robot: str | None = None,
+    robot: str | os.PathLike[str] | None = None,
     observer: str | os.PathLike[str] | Eyes | None = None,
 ) -> Episode:
-    """Carry a plan out with the Panda in simulation and say how it went. A failed execution is no exception.
+    """Carry a plan out in simulation and say how it went. A failed execution is no exception.
 
     Example:
         `smash.execute(instance, smash.plan(instance)).success`
@@ -45,12 +45,13 @@ def execute(
         noise: what is not known exactly, as in `"pose=3mm,yaw=2deg,friction=10%"` (None: what the scene says).
         pace: share of the arm's velocity and acceleration limits that motions use (None: what the scene says).
         engine: `pybullet` or `mujoco` (None: the scene's, else PyBullet, else MuJoCo where that is what is installed).
-        robot: None; the Panda is the one that there is.
+        robot: the name of a robot that is shipped, or the path of a `smash-robot/1` file (None: the scene's, else
+            `panda`).
         observer: where the blocks are seen: the path of a file of recorded poses (`smash-poses/1`), or what makes an
             observer, `smash.execution.observer.Eyes` (None: the simulator, with the scene's noise).
 
     Returns:
-        The episode: `success`, `failure` (name, step, action, reason), `engine`, times, and each action as
+        The episode: `success`, `failure` (name, step, action, reason), `engine`, `robot`, times, and each action as
         it was performed.
 
     Raises:
@@ -59,10 +60,14 @@ def execute(
         SmashError: where an argument is wrong, or the scene has no place for the instance.
     """
     require("execute", *EXECUTION)
+    from smash.motion.robots import load_robot
+
     if engine is not None:
         require_engine(engine)
+    if robot is not None and not isinstance(robot, str | os.PathLike):
+        raise SmashError(f"robot: {robot!r} is not allowed; the name of a robot, or the path of its file")
     if robot is not None:
-        raise SmashError(f"robot: {robot!r} is not allowed; there is no choice of one, None is allowed")
+        load_robot(robot)
     whole_number("seed", seed, 0, 2**31 - 1)
     problem = given_instance(instance)
     if observer is not None and not (isinstance(observer, str | os.PathLike) or callable(observer)):
@@ -81,5 +86,6 @@ def execute(
         noise=noise,
         pace=pace,
         engine=engine,
+        robot=robot,
         observer=observer,
     ).run()

@@ -83,6 +83,8 @@ def level_way(
     Raises:
         NoIk, NoMotion: where no such way is free; the message is about the lowest.
     """
+    if not planner.robot.upright:
+        raise NoMotion(f"the first joint of robot {planner.robot.name!r} does not turn it about the vertical")
     search = _Search(planner, target, scene, hand)
     pieces = search.way(start)
     return [_gentle(planner.robot, path, hand, ignored, margin, manner) for path, margin in pieces]

@@ -236,6 +236,12 @@ class Robot:
         return around[0] if around else min(below[-1], above[0])
 
     @property
+    def full_reach(self) -> tuple[float, float]:
+        """The least and the greatest distance from the base at which a pile may be as high as anywhere [m]."""
+        radii = [radius for radius, height in self.heights if height == self.tallest]
+        return radii[0], radii[-1]
+
+    @property
     def tallest(self) -> float:
         """The greatest of these heights [m]."""
         return max(height for _, height in self.heights)

@@ -27,6 +27,8 @@ SPLINE_STEP = 0.05
 """Largest joint distance between the spline's points [rad]."""
 EASED = 0.03
 """The moment in which the acceleration passes from one value to another [s]: so much longer a motion takes."""
+HARDEST = 3.2
+"""The jerk of an eased motion is this many accelerations over `EASED` at most: 2, and what the knots add to it."""
 EASED_STEP = 0.001
 """The averages over it are sums at this interval [s]."""
 MOST_ON_CURVES = 0.9
@@ -215,7 +217,7 @@ def _toppra(robot: Robot, waypoints: Waypoints, pace: Pace) -> Trajectory:
 
 def _rise(robot: Robot, share: float) -> NDArray[np.float64]:
     """Acceleration limits at a pace, no greater than what the jerk limits let through (`eased`) [rad/s^2], (n,)."""
-    return np.asarray(np.minimum(share * robot.acceleration, robot.jerk * EASED / 2))
+    return np.asarray(np.minimum(share * robot.acceleration, robot.jerk * EASED / HARDEST))
 
 
 @cache

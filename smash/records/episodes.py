@@ -17,6 +17,8 @@ from smash.records.record import Commit, Machine, Record
 
 EPISODE_FORMAT: Final = "smash-episode/1"
 EPISODE_RUN_FORMAT: Final = "smash-episode-run/1"
+ROBOT: Final = "panda"
+"""The robot of records that say nothing about one."""
 
 Origin = Literal["plan", "replan", "recovery"]
 
@@ -93,7 +95,7 @@ class Arrangement(msgspec.Struct, kw_only=True):
 
 
 class Episode(msgspec.Struct, kw_only=True):
-    """An executed plan; one without an `engine` was recorded when there was PyBullet alone.
+    """An executed plan; one without `engine` or `robot` was recorded when there was PyBullet alone, or the Panda.
 
     Attributes:
         noise: What was not known exactly, and how much of it [m, rad, share]; what is left out was.
@@ -107,6 +109,7 @@ class Episode(msgspec.Struct, kw_only=True):
     max_topple: int | None
     scene: str
     engine: str = "pybullet"
+    robot: str = ROBOT
     seed: int
     replanning: bool
     success: bool
@@ -134,11 +137,13 @@ class EpisodeRecord(Record, kw_only=True, frozen=True):
     """One episode of a sweep's plan: the plan's run, how it was carried out, where, and the episode itself.
 
     Attributes:
-        key: Names it for good: the run's key, policy, seed, scene, and the engine where it is not PyBullet.
+        key: Names it for good: the run's key, policy, seed, scene, and engine and robot where they are not PyBullet
+            and the Panda.
         run: Key of the run whose plan it carries out; what was planned stands beside it.
         scene: Name of the scene file (`default` is the built-in scene), then the noise and the pace that took the
             place of its own, as in "default pose=3mm pace=0.1"; None for the built-in scene as it is.
         engine: What simulated it; a record that does not say so is from when there was PyBullet alone.
+        robot: What carried it out; a record that does not say so is from when there was the Panda alone.
         depth: Of a single target in its start pile, the top being 1; None for other goals.
         episode: None where its process ended without one; `problem` says why.
     """
@@ -154,6 +159,7 @@ class EpisodeRecord(Record, kw_only=True, frozen=True):
     seed: int
     scene: str | None
     engine: str = "pybullet"
+    robot: str = ROBOT
     blocks: int
     depth: int | None
     cost: int

@@ -38,6 +38,7 @@ class Trial(Record, kw_only=True, frozen=True):
     Attributes:
         layout: The scene's fingerprint.
         engine: What simulated it; a record that does not say so is from when there was PyBullet alone.
+        robot: What toppled; a record that does not say so is from when there was the Panda alone.
         stack: Index of the scene's stack.
         height: Lowest level that falls, 1 is the bottom.
         falling: Number of blocks that fall.
@@ -53,6 +54,7 @@ class Trial(Record, kw_only=True, frozen=True):
     scene: str
     layout: str = ""
     engine: str = "pybullet"
+    robot: str = "panda"
     stack: int
     height: int
     falling: int

@@ -15,7 +15,7 @@ from smash_analysis.report.sources import find_sources
 from smash_analysis.tables.scenes import SEVERAL, by_scene
 
 from smash.problem.errors import MalformedFile
-from smash.records.engines import MixedEngines
+from smash.records.engines import MixedEngines, MixedRobots
 
 
 def record(instance, variant, seconds, success=True, seed=0, task=0.0):
@@ -198,6 +198,20 @@ def test_the_report_shows_each_engine_apart(tmp_path):
         f"smash episodes again/{tmp_path.name} --seeds 2 --policy open --engine mujoco",
         f"python -m smash_analysis.engines again/{tmp_path.name}    # both engines, paired",
     ]
+
+
+def test_episodes_of_two_robots_make_no_table_and_old_ones_are_the_panda_s(tmp_path):
+    records = [record("i", "topple", 60.0), {**record("i", "topple", 60.0, seed=1), "robot": "six-1234abcd"}]
+    (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(entry) + "\n" for entry in records))
+    words = r"episodes of several robots \(1 by panda, 1 by six-1234abcd\) make no table"
+    with pytest.raises(MixedRobots, match=words):
+        read_episodes(tmp_path)
+    sources = find_sources(tmp_path, tmp_path / "report")
+    assert [source.title for source in sources] == [
+        f"{tmp_path.name}, pybullet",
+        f"{tmp_path.name}, pybullet, six-1234abcd",
+    ]
+    assert commands(sources[1])[0].endswith("--engine pybullet --robot six-1234abcd")
 
 
 def test_scenes_are_not_put_together(tmp_path):

@@ -202,7 +202,7 @@ def test_what_cannot_be_carried_out_is_said():
         smash.execute(FIGURE_1, [])
     for more, words in (
         ({"engine": "ode"}, "'pybullet' or 'mujoco' is allowed"),
-        ({"robot": "ur5"}, "None is allowed"),
+        ({"robot": "nobody"}, "there is none called 'nobody'; panda"),
     ):
         with pytest.raises(smash.SmashError, match=words):
             smash.execute(FIGURE_1, [], **more)
@@ -254,6 +254,7 @@ def test_without_an_extra_one_line_says_how_to_get_it(call, words):
         (["draw", "instance", FIGURE_1, "--out", "x.png"], "analysis"),
         (["draw", "gadget", "--out", "x.png"], "analysis"),
         (["compare", "multi-4", "--planner", "greedy"], "analysis"),
+        (["robot"], "execution"),
         (["report", "results"], "analysis"),
         (["records", "export", "results", "--out", "x"], "analysis"),
     ],

@@ -10,8 +10,11 @@ from smash.cli import smash
 from smash.execution.scene.scene_file import read_scene
 from smash.experiments.episodes.asked import asked_runs, note_asked
 from smash.experiments.episodes.audit import audit_episodes
+from smash.experiments.episodes.series import episode_runs
+from smash.motion.robots import load_robot
 from tests.analysis.made_up import record as made_up_run
 from tests.analysis.test_export import PLAN
+from tests.six_joints import written
 
 DONE = {"outcome": "done", "reason": None, "attempts": 1, "gap": False, "repaired": False, "begun": 0.1}
 TIMES = {"offline": 1.0, "offline_cpu": 0.5, "online": 2.0, "online_cpu": 0.2, "execution": 9.0}
@@ -132,6 +135,27 @@ def test_questions_add_up_and_are_noted_once(findings, tmp_path):
     assert sorted(run.key for run in asked_runs(tmp_path)) == [
         f"{RUN['key']}/{end}" for end in ("open/0", "open/1", f"replan/0/{told}")
     ]
+
+
+def test_episodes_of_another_robot_are_other_episodes(findings, tmp_path):
+    findings(record(0))
+    robot = written(tmp_path)
+    called = load_robot(robot).label
+    note_asked(tmp_path, 1, ["open"], None, [], robot=str(robot))
+    (tmp_path / "six.toml").unlink()
+    assert sorted(run.key for run in asked_runs(tmp_path)) == [
+        f"{RUN['key']}/{end}" for end in ("open/0", f"open/0/{called}", "open/1")
+    ]
+
+
+def test_what_is_asked_of_another_robot_goes_to_it(findings, tmp_path):
+    findings(record(0))
+    robot = str(written(tmp_path))
+    (run,) = episode_runs(tmp_path, range(1), ["open"], robot=robot)
+    assert run.robot == load_robot(robot).label
+    assert run.tabletop["robot"] == robot
+    (plain,) = episode_runs(tmp_path, range(1), ["open"])
+    assert (plain.robot, plain.tabletop) == ("panda", None)
 
 
 def test_where_nothing_was_carried_out_nothing_is_asked(tmp_path):

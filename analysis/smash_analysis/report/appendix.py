@@ -86,6 +86,7 @@ def commands(source: Source) -> list[str]:
     path = shlex.quote(f"again/{source.name}")
     lines: list[str] = []
     engine = f" --engine {source.engine}" if source.engine else ""
+    engine += f" --robot {source.robot}" if source.robot else ""
     if source.runs:
         lines += [_runs(source, path), f"smash records check {path}"]
     if source.episodes:

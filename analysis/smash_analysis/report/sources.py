@@ -13,7 +13,7 @@ import pandas as pd
 from smash.problem.errors import MalformedFile
 from smash.problem.words import visible
 from smash.records.believing import believed
-from smash.records.episodes import EpisodeRecord
+from smash.records.episodes import ROBOT, EpisodeRecord
 from smash.records.files import EPISODES, RUNS, TRIALS, R, RecordFile
 from smash.records.reading import NoRecords, Reading, read
 from smash.records.record import shown
@@ -26,13 +26,14 @@ FILES = (RUNS.name, EPISODES.name, TRIALS.name)
 
 @dataclass(slots=True)
 class Source:
-    """One directory with records, or what one engine simulated of it where several did.
+    """One directory with records, or what one engine and robot did of it where several did.
 
     Attributes:
         name: Its path below RESULTS; RESULTS' own name where it is RESULTS itself.
         path: The directory.
         engine: What simulated its episodes and topples; empty where there are none.
-        apart: Whether other engines simulated others of the directory, which are a source of their own.
+        robot: What carried them out; empty for the Panda.
+        apart: Whether other engines or robots did others of the directory, which are a source of their own.
         runs: Records of `runs.jsonl`; `episodes` and `trials` likewise.
         scaling: `scaling.csv`, where the records behind it were not kept.
         problems: Files that cannot be read.
@@ -43,6 +44,7 @@ class Source:
     name: str
     path: Path
     engine: str = ""
+    robot: str = ""
     apart: bool = False
     runs: list[RunRecord] = field(default_factory=list)
     episodes: list[EpisodeRecord] = field(default_factory=list)
@@ -55,7 +57,7 @@ class Source:
     @property
     def title(self) -> str:
         """What the report calls it."""
-        return f"{self.name}, {self.engine}" if self.apart else self.name
+        return ", ".join(filter(None, (self.name, self.engine, self.robot))) if self.apart else self.name
 
     @property
     def empty(self) -> bool:
@@ -128,24 +130,29 @@ def _read(directory: Path, results: Path, said: Callable[[str], None]) -> Source
 
 
 def _by_engine(source: Source) -> list[Source]:
-    """Return a source for each engine: what was simulated by several makes no table. Plans stand with the first."""
-    simulated = [*(each.engine for each in source.episodes), *(each.engine for each in source.trials)]
-    engines = list(dict.fromkeys(simulated))
-    if len(engines) < 2:
-        return [replace(source, engine="".join(engines))]
+    """Return a source for each engine and robot: what several have done makes no table. Plans stand with the first."""
+    episodes = [(record.engine, record.robot) for record in source.episodes]
+    kinds = list(dict.fromkeys([*episodes, *((trial.engine, trial.robot) for trial in source.trials)]))
+    if len(kinds) < 2:
+        engine, robot = kinds[0] if kinds else ("", "")
+        return [replace(source, engine=engine, robot="" if robot == ROBOT else robot)]
     parts = [
         Source(
             source.name,
             source.path,
             engine,
+            "" if robot == ROBOT else robot,
             apart=True,
-            episodes=[record for record in source.episodes if record.engine == engine],
-            trials=[trial for trial in source.trials if trial.engine == engine],
+            episodes=[record for record in source.episodes if (record.engine, record.robot) == (engine, robot)],
+            trials=[trial for trial in source.trials if (trial.engine, trial.robot) == (engine, robot)],
         )
-        for engine in engines
+        for engine, robot in kinds
     ]
-    first = replace(source, engine=engines[0], apart=True, episodes=parts[0].episodes, trials=parts[0].trials)
-    return [first, *parts[1:]]
+    first = parts[0]
+    whole = replace(
+        source, engine=first.engine, robot=first.robot, apart=True, episodes=first.episodes, trials=first.trials
+    )
+    return [whole, *parts[1:]]
 
 
 def _records(source: Source, kind: RecordFile[R]) -> list[R]:

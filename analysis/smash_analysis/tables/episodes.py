@@ -14,7 +14,8 @@ from smash_analysis.tables.actions import ACTION_COLUMNS, named
 TIMES = ("offline", "offline_cpu", "online", "online_cpu", "execution")
 EPISODE_TYPES = {
     **dict.fromkeys(
-        ("key", "run", "suite", "instance", "label", "variant", "policy", "scene", "engine", "status"), "string"
+        ("key", "run", "suite", "instance", "label", "variant", "policy", "scene", "engine", "robot", "status"),
+        "string",
     ),
     **dict.fromkeys(("seed", "blocks", "cost"), "int64"),
     "depth": "Int64",

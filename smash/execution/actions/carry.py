@@ -40,6 +40,7 @@ class CarryMotion(AggregateMotion[Carry]):
     """The post is grasped from above, the hand's thin side along the tray; poses afterwards are known."""
 
     action = Carry
+    level = True
 
     def plan(self, arm: ArmMotions, start: Vector, action: Carry, state: State, where: Geometry) -> list[Segment]:
         """Plan the way to the tray, the level way with it, and the way off.

@@ -7,7 +7,7 @@ Each kind lives in one small file and is listed in the `registry` beside it, as 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Generic, TypeVar
+from typing import ClassVar, Generic, TypeVar
 
 from smash.execution.actions.arm_motions import ArmMotions, Segment
 from smash.execution.scene.area import Area
@@ -23,9 +23,11 @@ class AggregateMotion(ABC, Generic[A]):
 
     Attributes:
         action: The class of its actions.
+        level: Whether it keeps level what the hand carries (`smash.motion.level`): not every arm can.
     """
 
     action: type[A]
+    level: ClassVar[bool] = False
 
     @abstractmethod
     def plan(self, arm: ArmMotions, start: Vector, action: A, state: State, where: Geometry) -> list[Segment]:

@@ -71,6 +71,7 @@ class LiftMotion(AggregateMotion[Lift]):
     """A grasp from the side, a level way, and back off; poses afterwards are known."""
 
     action = Lift
+    level = True
 
     def plan(self, arm: ArmMotions, start: Vector, action: Lift, state: State, where: Geometry) -> list[Segment]:
         """Plan the way to the pile, the level way with its upper part, and the way off.

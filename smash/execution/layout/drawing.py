@@ -9,9 +9,8 @@ from typing import Any
 from smash.execution.actions.topple import strip
 from smash.execution.layout.conditions import FALLING
 from smash.execution.scene.tabletop import Slot, Tabletop
+from smash.motion.robots import load_robot
 
-REACH = (0.30, 0.65)
-"""Radii between which the hand reaches every height from above [m]."""
 STACK, BUFFER, STRIP, TRAY = "#2563a8", "#8a8f98", "#d9822b", "#7a5a34"
 
 
@@ -25,7 +24,8 @@ def draw(tabletop: Tabletop, path: Path) -> None:
     figure = Figure(figsize=(7.0, 6.6), layout="constrained")
     FigureCanvasAgg(figure)
     axis = figure.subplots()
-    axis.add_patch(Annulus((0, 0), REACH[1], REACH[1] - REACH[0], facecolor="#eef3ee", edgecolor="none", zorder=0))
+    near, far = load_robot(tabletop.robot).full_reach
+    axis.add_patch(Annulus((0, 0), far, far - near, facecolor="#eef3ee", edgecolor="none", zorder=0))
     axis.add_patch(Circle((0, 0), 0.08, facecolor="#3b3f45", zorder=3))
     for index, slot in enumerate(tabletop.stacks, start=1):
         for rank, direction in enumerate(slot.directions):

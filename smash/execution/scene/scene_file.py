@@ -77,6 +77,7 @@ class _SceneFile(msgspec.Struct, forbid_unknown_fields=True):
     stacks: list[_StackFile]
     base: Literal["default"] | None = None
     engine: Literal["pybullet", "mujoco"] | None = None
+    robot: str | None = None
     block: _BlockFile = msgspec.field(default_factory=_BlockFile)
     friction: _FrictionFile = msgspec.field(default_factory=_FrictionFile)
     speed: _SpeedFile = msgspec.field(default_factory=_SpeedFile)
@@ -135,6 +136,8 @@ def scene_from_document(document: Any, where: str = "scene") -> Tabletop:
     if file.stations:
         tray, stations = Tray(file.block.side, **msgspec.to_builtins(file.tray)), file.stations
         table = replace(table, tray=tray, stations=tuple(Slot(s.radius, radians(s.angle)) for s in stations))
+    if file.robot is not None:
+        table = table.with_robot(beside(file.robot, where))
     _refuse_overlap(table, where)
     return table
 
@@ -152,15 +155,24 @@ def _noise(file: _NoiseFile, where: str) -> Noise:
         raise MalformedFile(where, str(error)) from None
 
 
+def beside(robot: str, scene: str) -> str:
+    """Return the robot that a scene file names: files are looked for beside it."""
+    return str(Path(scene).absolute().parent / robot) if robot.endswith(".toml") else robot
+
+
 def scene_of(
-    scene: str | os.PathLike[str] | Tabletop | None = None, noise: str | None = None, pace: float | None = None
+    scene: str | os.PathLike[str] | Tabletop | None = None,
+    noise: str | None = None,
+    pace: float | None = None,
+    robot: str | os.PathLike[str] | None = None,
 ) -> Tabletop:
-    """Return a scene: the built-in one where none is given, with another noise and pace where these are.
+    """Return a scene: the built-in one where none is given, with another noise, pace and robot where these are.
 
     Args:
         scene: a scene, or the path of its file.
         noise: as `parse_noise` reads it; it takes the place of all of the scene's own.
         pace: share of the arm's velocity and acceleration limits that motions use.
+        robot: name of a robot, or the path of its file.
 
     Raises:
         SmashError: with one line, where one of them is not allowed.
@@ -173,6 +185,9 @@ def scene_of(
         if not SLOWEST <= pace <= 1.0:
             raise SmashError(f"pace: {pace} is not allowed; {SLOWEST:g} to 1")
         scene = replace(scene, velocity=pace, acceleration=pace)
+    if robot is not None:
+        named = os.fspath(robot)
+        scene = scene.with_robot(os.path.abspath(named) if named.endswith(".toml") else named)
     return scene
 
 

@@ -7,13 +7,13 @@ frame (the stack's frame of the paper's pre-smash pose) has x radially outward a
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from math import cos, hypot, pi, sin
 
 from smash.execution.scene.block_pose import QUARTER, BlockPose
 from smash.execution.scene.tray import Tray
-from smash.motion.robots import load_robot
+from smash.motion.robots import DEFAULT_ROBOT, load_robot
 from smash.problem.errors import SmashError
 from smash.problem.model import Instance, OnGoal
 
@@ -135,7 +135,7 @@ class Tabletop:
         stations: Slots that trays can stand at, their length across the bearing.
         noise: What an episode does not know exactly.
         engine: What simulates it where nothing else is named; no part of the fingerprint.
-        robot: Name or file of the robot that stands at it, None for the default one; no part of the fingerprint.
+        robot: Name or file of the robot that stands at it, None for the default one.
     """
 
     name: str
@@ -161,7 +161,19 @@ class Tabletop:
     def fingerprint(self) -> str:
         """Eight characters that tell this scene from others, whatever they are called."""
         noise = "" if self.noise == Noise() else repr(self.noise)
-        return sha256(f"{self!r}{noise}".encode()).hexdigest()[:8]
+        robot = load_robot(self.robot).label
+        other = "" if robot == DEFAULT_ROBOT else robot
+        return sha256(f"{self!r}{noise}{other}".encode()).hexdigest()[:8]
+
+    def with_robot(self, robot: str) -> Tabletop:
+        """The same table with another robot, which has a name or a file.
+
+        Raises:
+            SmashError: where there is none of that name, or its file is malformed.
+        """
+        load_robot(robot)
+        tray = None if self.tray is None else replace(self.tray, robot=robot)
+        return replace(self, robot=robot, tray=tray)
 
     @property
     def highest(self) -> int:

@@ -63,6 +63,7 @@ def run_trial(tabletop: Tabletop, stack: int, height: int, falling: int, seed: i
         scene=tabletop.name,
         layout=tabletop.fingerprint,
         engine=engine,
+        robot=arm.robot.label,
         stack=stack,
         height=height,
         falling=falling,

@@ -10,8 +10,9 @@ from typing import Annotated, Literal, cast
 import msgspec
 
 from smash.experiments.episodes.question import EpisodeRun
-from smash.experiments.episodes.series import episode_runs, told_apart
+from smash.experiments.episodes.series import episode_runs, robot_label, told_apart
 from smash.problem.files.documents import convert, parse_json, read_bytes, write_text
+from smash.records.episodes import ROBOT
 
 ASKED = "episodes-asked.json"
 MOST_SEEDS = 10_000
@@ -22,7 +23,7 @@ class Question(msgspec.Struct, frozen=True):
     """Every plan of these labels (of all where there are none), by these policies, under seeds 0 to `seeds` - 1.
 
     `scene` is the name of a scene file with what tells its content from others, None for the built-in scene; `engine`
-    is what simulates them.
+    is what simulates them, `robot` what records call the robot.
     """
 
     seeds: Annotated[int, msgspec.Meta(ge=1, le=MOST_SEEDS)]
@@ -30,6 +31,7 @@ class Question(msgspec.Struct, frozen=True):
     scene: str | None = None
     labels: list[str] = []
     engine: str = "pybullet"
+    robot: str = ROBOT
 
 
 class Asked(msgspec.Struct, frozen=True):
@@ -48,6 +50,7 @@ def note_asked(
     noise: str | None = None,
     pace: float | None = None,
     engine: str = "pybullet",
+    robot: str | None = None,
 ) -> None:
     """Add a question to those of a results directory; one that stands there already is not added again.
 
@@ -60,9 +63,12 @@ def note_asked(
         noise: in place of the scene's own, or None.
         pace: the same.
         engine: what simulates them.
+        robot: its name or file, in place of the scene's own, or None.
     """
     before = _questions(results) or []
-    question = Question(seeds, list(policies), told_apart(scene, noise, pace), list(labels), engine)
+    question = Question(
+        seeds, list(policies), told_apart(scene, noise, pace), list(labels), engine, robot_label(scene, robot)
+    )
     if question not in before:
         document = Asked("smash-episodes/1", [*before, question])
         text = msgspec.json.format(msgspec.json.encode(document), indent=1).decode()
@@ -82,7 +88,9 @@ def asked_runs(results: Path) -> list[EpisodeRun] | None:
     for question in questions:
         told = None if question.scene is None else question.scene.removesuffix(".toml").removesuffix(".json")
         seeds, policies, labels = range(question.seeds), question.policies, question.labels
-        for run in episode_runs(results, seeds, policies, labels=labels, told=told, engine=question.engine):
+        for run in episode_runs(
+            results, seeds, policies, labels=labels, told=told, engine=question.engine, called=question.robot
+        ):
             runs.setdefault(run.key, run)
     return list(runs.values())
 

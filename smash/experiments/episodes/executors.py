@@ -34,6 +34,7 @@ def executor_of(
     replanner: str | None = None,
     budget: float = REPLAN_BUDGET,
     engine: str | None = None,
+    robot: str | os.PathLike[str] | None = None,
     observer: str | os.PathLike[str] | Eyes | None = None,
     looks: list[Look] | None = None,
     gui: bool = False,
@@ -53,6 +54,7 @@ def executor_of(
         replanner: planner to replan with (None: the plan's own); `greedy` where nobody is called so.
         budget: wall time of each replanning [s].
         engine: what simulates it (None: the scene's, else the one that is there).
+        robot: name of a robot, or the path of its file (None: the scene's, else the Panda).
         observer: where the blocks are seen: the path of a `smash-poses/1` file, or what makes an observer (None: the
             simulator, with the scene's noise).
         looks: gets all that is seen.
@@ -78,7 +80,7 @@ def executor_of(
     return Executor(
         instance,
         plan,
-        scene_of(scene, noise, pace),
+        scene_of(scene, noise, pace, robot),
         seed=seed,
         policy=None if replan else OPEN,
         replanner=replanner_by(replanner or plan.planner, budget, seed) if replan else None,

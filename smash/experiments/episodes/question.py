@@ -6,6 +6,7 @@ from typing import Any
 
 import msgspec
 
+from smash.records.episodes import ROBOT
 from smash.records.runs import RunRecord
 from smash.records.trials import Key
 
@@ -22,6 +23,7 @@ class EpisodeRun(msgspec.Struct, frozen=True, tag="episode"):
         tabletop: The scene itself as plain data, or None for the built-in scene.
         replay: The page to write, or None.
         engine: What simulates it.
+        robot: What records call the robot.
     """
 
     record: RunRecord
@@ -32,12 +34,15 @@ class EpisodeRun(msgspec.Struct, frozen=True, tag="episode"):
     tabletop: dict[str, Any] | None = None
     replay: str | None = None
     engine: str = "pybullet"
+    robot: str = ROBOT
 
     @property
     def key(self) -> str:
         """Names the episode for good."""
         words = [self.record.key, self.policy, str(self.seed), *filter(None, [self.told])]
-        return "/".join(words if self.engine == "pybullet" else [*words, self.engine])
+        words += [] if self.engine == "pybullet" else [self.engine]
+        words += [] if self.robot == ROBOT else [self.robot]
+        return "/".join(words)
 
 
 class TrialRun(msgspec.Struct, frozen=True, tag="trial"):

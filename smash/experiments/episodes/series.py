@@ -25,7 +25,7 @@ from smash.problem.errors import SmashError
 from smash.problem.files.instances import instance_from_document
 from smash.problem.model import Instance, PositionsGoal
 from smash.records.believing import judge
-from smash.records.episodes import EPISODE_RUN_FORMAT, Episode, EpisodeRecord
+from smash.records.episodes import EPISODE_RUN_FORMAT, ROBOT, Episode, EpisodeRecord
 from smash.records.files import RUNS
 from smash.records.reading import read
 
@@ -60,11 +60,23 @@ def scene_name(scene: str | os.PathLike[str] | None, noise: str | None = None, p
     return " ".join(words)
 
 
-def scene_document(scene: str | os.PathLike[str] | None, noise: str | None, pace: float | None) -> dict[str, Any]:
+def scene_document(
+    scene: str | os.PathLike[str] | None, noise: str | None, pace: float | None, robot: str | None
+) -> dict[str, Any]:
     """Return a scene as plain data, which goes to processes and machines that do not see its file."""
     from smash.execution.scene.scene_file import scene_of
 
-    return cast("dict[str, Any]", msgspec.to_builtins(scene_of(scene, noise, pace)))
+    return cast("dict[str, Any]", msgspec.to_builtins(scene_of(scene, noise, pace, robot)))
+
+
+def robot_label(scene: str | os.PathLike[str] | None, robot: str | None) -> str:
+    """Return what records call the robot that is named, or else the scene's."""
+    if scene is None and robot is None:
+        return ROBOT
+    from smash.execution.scene.scene_file import scene_of
+    from smash.motion.robots import load_robot
+
+    return load_robot(scene_of(scene, robot=robot).robot).label
 
 
 def episode_runs(
@@ -78,6 +90,8 @@ def episode_runs(
     noise: str | None = None,
     pace: float | None = None,
     engine: str = "pybullet",
+    robot: str | None = None,
+    called: str | None = None,
 ) -> list[EpisodeRun]:
     """Return the episodes of all plans that a sweep has recorded, seed by seed, so that a part is a fair sample.
 
@@ -92,6 +106,8 @@ def episode_runs(
         noise: In place of the scene's own.
         pace: The same.
         engine: What simulates them.
+        robot: The robot that stands at the scene, by name or file, in place of the scene's own.
+        called: What records call it; found out where it is not given.
 
     Raises:
         MalformedFile: where the records are damaged.
@@ -106,9 +122,10 @@ def episode_runs(
             raise SmashError(f"{reading.path}: no plan by {label!r}; there are plans by {', '.join(sorted(known))}")
     plans = [record for record in plans if not labels or record.label in labels]
     name, told = scene_name(scene, noise, pace), told or told_apart(scene, noise, pace)
-    tabletop = None if name is None else scene_document(scene, noise, pace)
+    tabletop = None if name is None and robot is None else scene_document(scene, noise, pace, robot)
+    called = called or robot_label(scene, robot)
     runs = [
-        EpisodeRun(record, seed, policy, name, told, tabletop, engine=engine)
+        EpisodeRun(record, seed, policy, name, told, tabletop, engine=engine, robot=called)
         for seed in seeds
         for record in plans
         for policy in policies
@@ -124,6 +141,7 @@ def _replay(results: Path, run: EpisodeRun) -> str:
     words = [run.record.instance, run.record.label, run.record.variant, run.policy]
     words += [] if run.told is None else [run.told]
     words += [] if run.engine == "pybullet" else [run.engine]
+    words += [] if run.robot == ROBOT else [run.robot]
     name = re.sub(r"[^A-Za-z0-9.-]+", "-", "_".join(words)).strip("-")
     return str((results / REPLAYS / f"{name}.html").resolve())
 
@@ -161,6 +179,7 @@ def _record(
         seed=run.seed,
         scene=run.scene,
         engine=run.engine,
+        robot=run.robot,
         blocks=len(instance.blocks),
         depth=target_depth(instance),
         cost=plan.cost,

@@ -35,7 +35,7 @@ def robot_names() -> tuple[str, ...]:
 
 
 def load_robot(robot: str | os.PathLike[str] | None = None) -> Robot:
-    """Return a robot; the same object whenever the same one is asked for in this process.
+    """Return a robot; the same object whenever the same one is asked for in this process, until its file changes.
 
     Args:
         robot: the name of a shipped one, or the path of a robot file, which ends in `.toml`; None for the default one.
@@ -44,7 +44,8 @@ def load_robot(robot: str | os.PathLike[str] | None = None) -> Robot:
         MalformedFile: where a file is not what its format says, or what it names is missing.
         SmashError: where there is none of that name.
     """
-    return _loaded(_path_of(robot))
+    path = _path_of(robot)
+    return _loaded(path, path.stat().st_mtime_ns if path.parent != FOLDER and path.is_file() else 0)
 
 
 def _path_of(robot: str | os.PathLike[str] | None) -> Path:
@@ -58,7 +59,7 @@ def _path_of(robot: str | os.PathLike[str] | None) -> Path:
 
 
 @lru_cache(maxsize=16)
-def _loaded(path: Path) -> Robot:
+def _loaded(path: Path, _changed: int) -> Robot:
     where = str(path)
     file = read_robot_file(path)
     if path.parent != FOLDER and file.name in robot_names():

@@ -1,0 +1,74 @@
+"""Whether a robot can do what a plan asks in a scene: said before anything moves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from smash.execution.actions.registry import MOTIONS
+from smash.execution.scene.tabletop import DoesNotFit, Slot, Tabletop
+from smash.motion.robot import Robot
+from smash.problem.errors import Unsupported
+from smash.problem.model import Action, Aggregating, State
+from smash.problem.rules import Law
+
+
+def require_able(
+    robot: Robot,
+    tabletop: Tabletop,
+    law: Law,
+    actions: Sequence[Action],
+    places: Mapping[str, Slot],
+) -> None:
+    """Refuse a plan with piles where the arm does not reach, or with actions that it has no motion for.
+
+    Args:
+        robot: The robot.
+        tabletop: The scene.
+        law: Of the instance.
+        actions: A plan that the law accepts.
+        places: The slots of locations and stations.
+
+    Raises:
+        DoesNotFit: where a pile, or a station that is used, is out of reach.
+        Unsupported: where what the hand carries is kept level, and the arm cannot do that.
+    """
+    for action in actions:
+        motion = MOTIONS.get(type(action)) if isinstance(action, Aggregating) else None
+        if motion is not None and motion.level and not robot.upright:
+            raise Unsupported(
+                f"robot {robot.name!r}: its first joint does not turn it about the vertical, "
+                f"which {type(action).__name__.lower()} needs: it keeps level what the hand carries"
+            )
+    for place, levels in highest_piles(law, actions).items():
+        radius, needed = places[place].radius, levels * tabletop.side
+        if needed > robot.highest(radius) + 1e-9:
+            raise DoesNotFit(
+                f"robot {robot.name!r} does not reach {levels} blocks at {place!r} of scene {tabletop.name!r}, "
+                f"{radius:.2f} m from its base; it reaches {_say(robot, tabletop.side)}"
+            )
+
+
+def highest_piles(law: Law, actions: Sequence[Action]) -> dict[str, int]:
+    """Return how many blocks stand at each location at most while a plan is carried out, where any do.
+
+    Stations that a carrier stands at count as one.
+    """
+    highest: dict[str, int] = {}
+    for state in (State.start_of(law.instance), *law.states(actions)):
+        piles = {location: len(pile) for location, pile in state.piles.items() if pile}
+        for place, levels in (*piles.items(), *((station, 1) for station in state.stations.values())):
+            highest[place] = max(highest.get(place, 0), levels)
+    return highest
+
+
+def _say(robot: Robot, side: float) -> str:
+    """Where it reaches how high, in words."""
+    words: list[str] = []
+    levels = [(radius, int(height / side + 1e-9)) for radius, height in robot.heights]
+    start = 0
+    for index in range(1, len(levels) + 1):
+        if index == len(levels) or levels[index][1] != levels[start][1]:
+            if levels[start][1]:
+                words.append(f"{levels[start][1]} from {levels[start][0]:.2f} to {levels[index - 1][0]:.2f} m")
+            start = index
+    return ", ".join(words)
