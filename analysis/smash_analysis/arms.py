@@ -47,7 +47,7 @@ def read_arms(results: Path) -> tuple[list[str], pd.DataFrame]:
     for robot, engine in product(robots, sorted({record.engine for record in records})):
         mine = [record for record in records if (record.robot, record.engine) == (robot, engine)]
         if mine:
-            tables.append(told_episodes(mine, str(results)).assign(robot=robot))
+            tables.append(told_episodes(mine, str(results)))
     episodes = pd.concat(tables, ignore_index=True)
     return robots, episodes.assign(scene=episodes["scene"].fillna("default"))
 
