@@ -45,7 +45,7 @@ ORDERS = {
     "smash_analysis": (
         *("statistics", "metrics", "tables", "charts", "command"),
         *("ablation", "comparison", "scaling", "execution_tables", "execution_sweeps", "robustness", "paces", "scoop"),
-        *("engine_landings", "engines"),
+        *("engine_landings", "engines", "arms"),
         *("forecasts", "readme", "export"),
         "report",
     ),

@@ -91,6 +91,18 @@ def test_the_wheel_has_the_data_of_the_tree_and_reads_it(wheel, tmp_path):
     assert not found["changes the list"]
 
 
+def test_the_wheel_has_every_robot_with_its_meshes_and_the_licence_of_each(wheel):
+    shipped = {name for name in wheel[1] if name.startswith("smash/motion/robots/")}
+    data = {f"smash/motion/robots/{name}" for name in in_tree("smash/motion/robots") if "__pycache__" not in name}
+    assert data <= shipped
+    folders = {name.split("/")[3] for name in data if "/meshes/" in name}
+    assert {"ur5", "xarm7"} < folders
+    metadata = next(name.split("/")[0] for name in wheel[1] if ".dist-info/" in name)
+    for folder in folders:
+        assert f"smash/motion/robots/{folder}/LICENSE.txt" in shipped
+        assert f"{metadata}/licenses/smash/motion/robots/{folder}/LICENSE.txt" in wheel[1]
+
+
 def test_an_editable_install_reads_the_tree(tmp_path):
     found = found_in(built("editable", tmp_path)[0], tmp_path)
     assert all(Path(package).is_relative_to(ROOT) for package in found["packages"])
