@@ -119,7 +119,7 @@ def _carriers(carriers: Any, where: str) -> tuple[Carrier, ...]:
 
 def _names(part: str, names: Any, where: str) -> tuple[str, ...]:
     """Return names as a tuple; anything else is refused."""
-    if not isinstance(names, Iterable) or (isinstance(names, str) and part in ("stacks", "buffers", "table")):
+    if not isinstance(names, Iterable) or (isinstance(names, str) and part in ("stacks", "buffers")):
         raise MalformedFile(where, f"`{part}`: {names!r} is not allowed; a list of names is")
     return tuple(_name(part, name, where) for name in names)
 
