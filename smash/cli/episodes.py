@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Hashable
+from collections.abc import Callable, Collection, Hashable
 from functools import partial
 from itertools import product
 from pathlib import Path
@@ -109,8 +109,7 @@ def command(
     ]
     again = partial(_ended_without, {run.key for run in runs} if redo else set())
     if dry_run:
-        there = read(results, EPISODES).records if EPISODES.path(results).is_file() else []
-        kept = {record.key for record in there if not again(record)}
+        kept = _kept(results, again)
         _say_left(len(runs), sum(run.key not in kept for run in runs), jobs, engine)
         return
     if replays:
@@ -129,10 +128,21 @@ def command(
         for noise, pace in changes:
             note_asked(results, seeds, policies, scene, labels, noise, pace, engine, robot)
         if left:
-            with pool(jobs, dask, longest(LONGEST), partial(click.echo, err=True)) as there:
-                task = partial(run_episode, stop=stop) if there.here else run_episode
-                sweep(runs, records, there.executor, task, _Said(left), stop)
+            with pool(jobs, dask, longest(LONGEST), partial(click.echo, err=True)) as workers:
+                task = partial(run_episode, stop=stop) if workers.here else run_episode
+                sweep(runs, records, workers.executor, task, _Said(left), stop)
     click.echo(f"{counted(len(runs), 'episode')} recorded in {records.path}")
+
+
+def _kept(results: Path, again: Callable[[EpisodeRecord], bool]) -> set[Hashable]:
+    """Keys of the episodes that a start would leave as they are; says which lines are damaged, and writes nothing."""
+    if not EPISODES.path(results).is_file():
+        return set()
+    there = read(results, EPISODES)
+    for damaged in there.damaged:
+        line = f"{EPISODES.name}: line {damaged.number}: {damaged.reason}"
+        click.echo(one_line(f"{line}: damaged: its episode will be carried out again"), err=True)
+    return {record.key for record in there.records if not again(record)}
 
 
 def _ended_without(meant: Collection[Hashable], record: EpisodeRecord) -> bool:
