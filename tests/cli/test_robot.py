@@ -66,7 +66,7 @@ def test_what_is_wrong_with_a_robot_is_one_line_before_anything_moves(filed, cap
     execute = ["execute", filed / "i.json", filed / "p.json", "--robot"]
     assert refused(capfd, monkeypatch, *execute, "r2d2") == (
         2,
-        "smash: robot: there is none called 'r2d2'; panda, or the path of a robot file (.toml)",
+        "smash: robot: there is none called 'r2d2'; panda, ur5, xarm7, or the path of a robot file (.toml)",
     )
     code, line = refused(capfd, monkeypatch, *execute, filed / "none.toml")
     assert (code, "none.toml: cannot be read" in line) == (2, True)
