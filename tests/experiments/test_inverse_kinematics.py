@@ -3,7 +3,7 @@
 import numpy as np
 
 from smash.experiments.studies.inverse_kinematics import beginnings, poses, reaches, rows, shortened
-from smash.motion.kinematics import LARGEST_STEP
+from smash.motion.descent import LARGEST_STEP
 from smash.motion.robots import load_robot
 
 
