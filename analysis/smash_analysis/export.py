@@ -12,6 +12,7 @@ from typing import Any
 
 import pandas as pd
 
+from smash.records.episodes import EpisodeRecord
 from smash.records.files import EPISODES
 from smash.records.runs import RunRecord
 from smash_analysis.tables.believed import records_of, runs_of
@@ -79,13 +80,19 @@ def _tables(results: Path) -> Iterator[tuple[str, pd.DataFrame]]:
         MalformedFile: as `export`.
     """
     records = runs_of(results)
-    carried_out = records_of(results, EPISODES) if EPISODES.path(results).is_file() else None
+    carried_out = _carried_out(results)
     yield "runs", tidy_runs(records)
     yield "incumbents", incumbents_table(records)
     yield "steps", steps_table(records)
-    if carried_out is not None:
+    if carried_out:
         yield "episodes", episodes_table(carried_out)
         yield "actions", actions_table(carried_out)
+
+
+def _carried_out(results: Path) -> list[EpisodeRecord]:
+    """Return the episodes; none where nothing was carried out, or a first start was stopped before its first end."""
+    file = EPISODES.path(results)
+    return records_of(results, EPISODES) if file.is_file() and file.stat().st_size else []
 
 
 def export(results: Path, out: Path) -> list[tuple[Path, int]]:

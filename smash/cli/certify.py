@@ -14,6 +14,7 @@ from smash.problem.files.documents import write_text
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import read_plan
 from smash.problem.problem import Problem
+from smash.problem.words import counted
 
 
 @click.command("certify")
@@ -50,4 +51,5 @@ def command(instance: Path, plan: Path, budget: float, out: Path) -> None:
     write_text(out, certificate_text(certificate))
     note = f" ({certificate.note})" if certificate.note else ""
     cycles = len(certificate.cycles) + sum(len(first.cycles) for first in certificate.first_places)
-    click.echo(f"{cycles} cycles prove that every plan has at least {certificate.bound} actions{note}")
+    proof = f"{counted(cycles, 'cycle')} {'proves' if cycles == 1 else 'prove'}"
+    click.echo(f"{proof} that every plan has at least {certificate.bound} actions{note}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Hashable
 from functools import partial
 from itertools import product
 from pathlib import Path
@@ -23,6 +23,7 @@ from smash.problem.extras import EXECUTION, require
 from smash.problem.words import counted, one_line
 from smash.records.episodes import EpisodeRecord
 from smash.records.files import EPISODES
+from smash.records.reading import read
 from smash.records.writing import Writer
 
 SECONDS_AN_EPISODE = 5.0
@@ -104,26 +105,27 @@ def command(
             results, range(seeds), policies, file, labels, replays, noise=noise, pace=pace, engine=engine
         )
     ]
+    again = partial(_ended_without, {run.key for run in runs} if redo else set())
+    if dry_run:
+        reading = read(results, EPISODES) if EPISODES.path(results).is_file() else None
+        for note in () if reading is None else reading.notes():
+            click.echo(one_line(note), err=True)
+        kept = {record.key for record in ([] if reading is None else reading.records) if not again(record)}
+        _say_left(len(runs), sum(run.key not in kept for run in runs), jobs, engine)
+        return
     if replays:
         (results / REPLAYS).mkdir(exist_ok=True)
-    meant = {run.key for run in runs} if redo and not dry_run else set()
-    again = partial(_ended_without, meant)
     with stopped_by_signals() as stop, Writer(results, EPISODES, again) as records:
         left = sum(run.key not in records.finished for run in runs)
-        about = span(left * SECONDS_AN_EPISODE / jobs)
         for line in records.set_aside:
             click.echo(one_line(f"{line}: damaged: set aside, its episode is carried out again"), err=True)
-        click.echo(
-            f"{counted(len(runs), 'episode')}, {left} left, about {about} with {jobs} at a time, by {engine}", err=True
-        )
+        _say_left(len(runs), left, jobs, engine)
         if records.redone:
             lie = f"their records lie in {EPISODES.redone(results).name}"
             click.echo(f"{counted(records.redone, 'recorded episode')} carried out again; {lie}", err=True)
         bare = sum(run.key in records.finished and not Path(run.replay).exists() for run in runs if run.replay)
         if bare:
             click.echo(f"{bare} recorded earlier have no replay: `smash execute --replay` makes one", err=True)
-        if dry_run:
-            return
         for noise, pace in changes:
             note_asked(results, seeds, policies, scene, labels, noise, pace, engine)
         if left:
@@ -133,8 +135,13 @@ def command(
     click.echo(f"{counted(len(runs), 'episode')} recorded in {records.path}")
 
 
-def _ended_without(meant: Collection[str], record: EpisodeRecord) -> bool:
+def _ended_without(meant: Collection[Hashable], record: EpisodeRecord) -> bool:
     return record.episode is None and record.key in meant
+
+
+def _say_left(count: int, left: int, jobs: int, engine: str) -> None:
+    about = span(left * SECONDS_AN_EPISODE / jobs)
+    click.echo(f"{counted(count, 'episode')}, {left} left, about {about} with {jobs} at a time, by {engine}", err=True)
 
 
 class _Said:

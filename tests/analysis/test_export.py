@@ -39,6 +39,14 @@ def test_parquet_and_csv_hold_the_same(tables, name, rows):
     assert parquet.read_schema(tables / f"{name}.parquet").metadata[b"format"] == b"smash-tables/1"
 
 
+def test_a_start_of_episodes_that_ended_at_once_hinders_nothing(tmp_path):
+    (tmp_path / "results").mkdir()
+    (tmp_path / "results" / "episodes.jsonl").touch()
+    ended = export(tmp_path, record(0, [(0.1, 4)], actions=PLAN))
+    assert ended.exit_code == 0, ended.output
+    assert not (tmp_path / "out" / "episodes.csv").exists()
+
+
 def test_a_csv_file_is_what_pandas_writes_but_for_formulas(tmp_path):
     table = pd.DataFrame(
         {

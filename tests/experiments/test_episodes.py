@@ -46,6 +46,32 @@ def results(tmp_path_factory):
 
 
 @simulated
+def test_a_dry_run_writes_nothing(results, tmp_path):
+    there = tmp_path / "there"
+    shutil.copytree(results, there, ignore=shutil.ignore_patterns("episodes*"))
+    before = sorted(file.name for file in there.iterdir())
+    ended = smash("episodes", there, "--dry-run", "--redo")
+    assert (ended.returncode, ended.stderr.split(",")[0]) == (0, "1 episode")
+    assert sorted(file.name for file in there.iterdir()) == before
+
+
+@simulated
+def test_an_episode_without_one_is_carried_out_again_by_redo(results, tmp_path):
+    there = tmp_path / "there"
+    shutil.copytree(results, there, ignore=shutil.ignore_patterns("episodes*"))
+    assert smash("episodes", there, "--seeds", "2", "--policy", "open").returncode == 0
+    first, second = (there / "episodes.jsonl").read_text().splitlines()
+    lost = json.dumps({**json.loads(first), "episode": None, "problem": "its guardian was killed"})
+    (there / "episodes.jsonl").write_text(f"{lost}\n{second}\n")
+    ended = smash("episodes", there, "--seeds", "2", "--policy", "open", "--redo")
+    assert "1 recorded episode carried out again; their records lie in episodes.redone" in ended.stderr
+    records = [json.loads(line) for line in (there / "episodes.jsonl").read_text().splitlines()]
+    assert {record["key"] for record in records} == {json.loads(line)["key"] for line in (first, second)}
+    assert all(record["episode"] for record in records)
+    assert (there / "episodes.redone").read_text() == f"{lost}\n"
+
+
+@simulated
 def test_every_plan_is_carried_out_once_and_kept(results):
     ended = smash("episodes", results, "--policy", "open", "--policy", "replan")
     assert ended.returncode == 0, ended.stderr
@@ -164,7 +190,12 @@ def test_a_damaged_last_episode_is_set_aside_and_carried_out_again(results, tmp_
         shutil.copyfile(results / name, tmp_path / name)
     whole = (tmp_path / EPISODES.name).read_bytes()
     (tmp_path / EPISODES.name).write_bytes(whole[:-50])
-    ended = smash("episodes", tmp_path, "--policy", "open", "--policy", "replan", "--dry-run")
+    asked = ("episodes", tmp_path, "--policy", "open", "--policy", "replan")
+    said = smash(*asked, "--dry-run").stderr
+    assert "2 episodes, 1 left" in said
+    assert "left out, a resumed run does its episode again" in said
+    assert (tmp_path / EPISODES.name).read_bytes() == whole[:-50]
+    ended = smash(*asked)
     assert "damaged: set aside, its episode is carried out again" in ended.stderr
     assert "2 episodes, 1 left" in ended.stderr
     assert (tmp_path / "episodes.damaged").read_bytes().strip() in whole

@@ -15,7 +15,7 @@ from smash.experiments.sweeps.experiment import Run
 from smash.records.believing import Judged, believe, judge
 from smash.records.episodes import EpisodeRecord
 from smash.records.files import RUNS, RecordFile
-from smash.records.reading import NO_JSON, Damaged, Line, Reading, read
+from smash.records.reading import Damaged, Line, Reading, read
 from smash.records.runs import RunRecord
 
 NEEDS_REASON = ("crashed", "memory", "over-budget", "refused", "unsupported", "not-installed")
@@ -64,15 +64,15 @@ def sound(lines: Sequence[Line[Swept]]) -> list[Check]:
 
 def whole_lines(reading: Reading[Swept], results: Path, kind: RecordFile[Swept]) -> Check:
     """Return a check with one line for each line of a file that is no record."""
-    damaged = [f"damaged: line {line.number}: {line.reason}{_remedy(line)}" for line in reading.damaged]
+    damaged = [f"damaged: line {line.number}: {line.reason}{_remedy(line, reading.ended)}" for line in reading.damaged]
     aside = kind.aside(results)
     count = sum(1 for part in aside.read_bytes().split(b"\n") if part) if aside.is_file() else 0
     set_aside = f" ({count} set aside by an earlier start)" if count else ""
     return Check("every line whole", f"{len(reading.lines)} whole, {len(damaged)} damaged{set_aside}", damaged)
 
 
-def _remedy(line: Damaged) -> str:
-    kill = ", as a kill leaves it" if line.last and line.reason.startswith(NO_JSON) else ""
+def _remedy(line: Damaged, ended: bool) -> str:
+    kill = ", as a kill leaves it" if line.last and not ended else ""
     return f"{kill}; start the sweep again: it is set aside, its run done"
 
 
