@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Hashable
+from collections.abc import Collection, Hashable
 from functools import partial
 from itertools import product
 from pathlib import Path
@@ -109,7 +109,10 @@ def command(
     ]
     again = partial(_ended_without, {run.key for run in runs} if redo else set())
     if dry_run:
-        kept = _kept(results, again)
+        reading = read(results, EPISODES) if EPISODES.path(results).is_file() else None
+        for note in () if reading is None else reading.notes():
+            click.echo(one_line(note), err=True)
+        kept = {record.key for record in ([] if reading is None else reading.records) if not again(record)}
         _say_left(len(runs), sum(run.key not in kept for run in runs), jobs, engine)
         return
     if replays:
@@ -132,17 +135,6 @@ def command(
                 task = partial(run_episode, stop=stop) if workers.here else run_episode
                 sweep(runs, records, workers.executor, task, _Said(left), stop)
     click.echo(f"{counted(len(runs), 'episode')} recorded in {records.path}")
-
-
-def _kept(results: Path, again: Callable[[EpisodeRecord], bool]) -> set[Hashable]:
-    """Keys of the episodes that a start would leave as they are; says which lines are damaged, and writes nothing."""
-    if not EPISODES.path(results).is_file():
-        return set()
-    there = read(results, EPISODES)
-    for damaged in there.damaged:
-        line = f"{EPISODES.name}: line {damaged.number}: {damaged.reason}"
-        click.echo(one_line(f"{line}: damaged: its episode will be carried out again"), err=True)
-    return {record.key for record in there.records if not again(record)}
 
 
 def _ended_without(meant: Collection[Hashable], record: EpisodeRecord) -> bool:

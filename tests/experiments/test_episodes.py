@@ -194,15 +194,20 @@ def test_killed_at_random_moments_no_episode_is_lost_or_repeated(results, tmp_pa
 
 
 @simulated
-def test_a_damaged_last_episode_is_named_and_carried_out_again(results, tmp_path):
+def test_a_damaged_last_episode_is_set_aside_and_carried_out_again(results, tmp_path):
     for name in ("runs.jsonl", EPISODES.name):
         shutil.copyfile(results / name, tmp_path / name)
     whole = (tmp_path / EPISODES.name).read_bytes()
     (tmp_path / EPISODES.name).write_bytes(whole[:-50])
-    ended = smash("episodes", tmp_path, "--policy", "open", "--policy", "replan", "--dry-run")
-    assert "damaged: its episode will be carried out again" in ended.stderr
-    assert "2 episodes, 1 left" in ended.stderr
+    asked = ("episodes", tmp_path, "--policy", "open", "--policy", "replan")
+    said = smash(*asked, "--dry-run").stderr
+    assert "2 episodes, 1 left" in said
+    assert "left out, a resumed run does its episode again" in said
     assert (tmp_path / EPISODES.name).read_bytes() == whole[:-50]
+    ended = smash(*asked)
+    assert "damaged: set aside, its episode is carried out again" in ended.stderr
+    assert "2 episodes, 1 left" in ended.stderr
+    assert (tmp_path / "episodes.damaged").read_bytes().strip() in whole
 
 
 @simulated
