@@ -1,13 +1,15 @@
 """The two stages, PyBullet's and MuJoCo's: one picture, whoever paints it."""
 
+from dataclasses import replace
 from importlib import import_module
+from operator import itemgetter
 
 import numpy as np
 import pytest
 
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.viewing import painters
-from smash.execution.viewing.stage import block_colours
+from smash.execution.viewing.stage import block_colours, slot_looks
 from smash.problem.errors import Unsupported
 from tests.execution.made_up import recording_of
 
@@ -73,3 +75,9 @@ def test_without_opengl_pictures_are_refused_in_one_line_before_the_episode(monk
     with pytest.raises(Unsupported, match="MuJoCo draws by OpenGL, and egl cannot be had here") as refusal:
         painters.require_painter()
     assert "\n" not in str(refusal.value)
+
+
+def test_a_stack_that_nothing_topples_looks_like_a_stack():
+    scene = default_scene()
+    still = replace(scene, stacks=tuple(replace(slot, directions=()) for slot in scene.stacks))
+    assert list(map(itemgetter(2), slot_looks(still))) == list(map(itemgetter(2), slot_looks(scene)))

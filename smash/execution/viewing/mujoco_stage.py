@@ -27,7 +27,7 @@ from smash.execution.viewing.stage import (
     Image,
     Stage,
     block_colours,
-    slot_look,
+    slot_looks,
 )
 from smash.motion.robots import load_robot
 from smash.problem.errors import Unsupported
@@ -98,8 +98,7 @@ class MujocoStage(Stage):
             if shape.name == "table":
                 shape.size, shape.pos, colour = TABLE_HALF, [0.0, 0.0, -TABLE_HALF[2]], TABLE_COLOUR
             shape.rgba = [*colour, 1.0]
-        for slot in tabletop.slots:
-            half, colour = slot_look(slot, tabletop.widest)
+        for slot, half, colour in slot_looks(tabletop):
             turn, place = [np.cos(slot.angle / 2), 0.0, 0.0, np.sin(slot.angle / 2)], [slot.x, slot.y, half[2]]
             spec.worldbody.add_geom(
                 type=mujoco.mjtGeom.mjGEOM_BOX,

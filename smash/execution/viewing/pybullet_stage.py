@@ -24,7 +24,7 @@ from smash.execution.viewing.stage import (
     Image,
     Stage,
     block_colours,
-    slot_look,
+    slot_looks,
 )
 from smash.motion.robots import load_robot
 
@@ -60,8 +60,7 @@ class PyBulletStage(Stage):
     def _furnish(self, tabletop: Tabletop) -> None:
         c = self._furniture
         _box(c, TABLE_HALF, [0, 0, -TABLE_HALF[2]], TABLE_COLOUR)
-        for slot in tabletop.slots:
-            half, colour = slot_look(slot, tabletop.widest)
+        for slot, half, colour in slot_looks(tabletop):
             _box(c, half, [slot.x, slot.y, half[2]], colour, c.getQuaternionFromEuler([0, 0, slot.angle]))
 
     def _tray(self, tabletop: Tabletop) -> int:

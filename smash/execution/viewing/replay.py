@@ -42,7 +42,9 @@ def write_replay(path: Path, recording: Recording, tabletop: Tabletop, episode: 
     scene: dict[str, Any] = {
         "side": tabletop.widest,
         "sizes": [tabletop.size(block).edges for block in instance.blocks],
-        "slots": [[slot.x, slot.y, slot.angle, bool(slot.directions)] for slot in tabletop.slots],
+        "slots": [
+            [slot.x, slot.y, slot.angle, number < len(tabletop.stacks)] for number, slot in enumerate(tabletop.slots)
+        ],
         "places": _places(tabletop, instance),
         "blocks": instance.blocks,
         "colours": block_colours(len(instance.blocks)),
