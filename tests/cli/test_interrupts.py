@@ -34,9 +34,12 @@ runpy.run_module("smash", run_name="__main__", alter_sys=True)
 
 
 def run(code, *words, ignored=False):
-    start = (lambda: signal.signal(signal.SIGINT, signal.SIG_IGN)) if ignored else None
+    """Run code with Ctrl-C ignored, or as in the foreground, wherever these tests themselves run."""
+    manner = signal.SIG_IGN if ignored else signal.SIG_DFL
     words = [sys.executable, "-c", code, *words]
-    return subprocess.run(words, capture_output=True, text=True, timeout=60, preexec_fn=start)
+    return subprocess.run(
+        words, capture_output=True, text=True, timeout=60, preexec_fn=lambda: signal.signal(signal.SIGINT, manner)
+    )
 
 
 @pytest.mark.parametrize("module", ["smash.cli", "click", "smash.problem.errors", "msgspec", "smash.cli.planners"])
