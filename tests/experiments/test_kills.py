@@ -69,7 +69,7 @@ def victims(mark):
             kinds.setdefault(("server", "guardian", "planner")[depth], []).append(number)
         elif "dask_scheduler" in words:
             kinds.setdefault("scheduler", []).append(number)
-        elif "smash sweep" in words:
+        elif "smash sweep" in words or "smash episodes" in words:
             kinds.setdefault("sweep", []).append(number)
         elif "multiprocessing" in words and "spawn_main" in words:
             kinds.setdefault("worker", []).append(number)
@@ -149,7 +149,7 @@ def ended(running):
     return running.returncode
 
 
-def disturbed(out, killer, start):
+def disturbed(file, killer, start):
     """Start a sweep again and again while the killer is at work, until it is done or its scheduler is killed.
 
     Returns:
@@ -158,7 +158,7 @@ def disturbed(out, killer, start):
     seen, running = set(), start()
     while killer.left:
         kind = killer.strike(running)
-        seen |= whole_lines(out / RUNS.name)
+        seen |= whole_lines(file)
         if kind == "scheduler":
             break
         if kind == "sweep":
@@ -176,7 +176,7 @@ def test_sixty_kills_of_a_sweep_and_its_processes(experiment, tmp_path, seed, ea
     rounds = 0
     while killer.left:
         out, rounds = tmp_path / f"out-{rounds}", rounds + 1
-        seen, _ = disturbed(out, killer, lambda out=out: sweep(experiment, out))
+        seen, _ = disturbed(out / RUNS.name, killer, lambda out=out: sweep(experiment, out))
         check_round(experiment, out, seen)
         assert gone(tmp_path) == ([], [], [])
     print(f"{killer.done.total()} kills in {rounds} sweeps: {dict(killer.done)}")
@@ -221,7 +221,7 @@ def test_forty_kills_on_dask(experiment, tmp_path):
         while killer.left and not done:
             with cluster(tmp_path, f"{rounds}-{len(killer.left)}") as scheduler:
                 more, done = disturbed(
-                    out, killer, lambda out=out, where=scheduler: sweep(experiment, out, "--dask", where)
+                    out / RUNS.name, killer, lambda out=out, where=scheduler: sweep(experiment, out, "--dask", where)
                 )
                 seen |= more
             assert gone(tmp_path) == ([], [], [])
