@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 
 from smash.problem.errors import SmashError
 from smash.problem.words import counted
-from smash.records.engines import require_one_engine, require_one_robot
+from smash.records.engines import require_alike
 from smash.records.files import TRIALS
 from smash.records.scenes import DEFAULT
 from smash_analysis.command import fail
@@ -90,23 +90,17 @@ def read_trials(directories: Sequence[Path]) -> pd.DataFrame:
         MixedEngines: where they were simulated by several engines.
         MixedRobots: where they were done by several robots.
     """
-    rows, engines, robots = [], [], []
-    for directory in directories:
-        for trial in records_of(directory, TRIALS):
-            engines.append(trial.engine)
-            robots.append(trial.robot)
-            rows.append(
-                {
-                    **{
-                        name: getattr(trial, name) for name in ("scene", "height", "falling", "seed", "stands", "moved")
-                    },
-                    "success": trial.success,
-                    "farthest": max((landing.along for landing in trial.landings), default=float("nan")),
-                }
-            )
-    require_one_engine(", ".join(map(str, directories)), "topples", engines)
-    require_one_robot(", ".join(map(str, directories)), "topples", robots)
-    return pd.DataFrame(rows)
+    trials = [trial for directory in directories for trial in records_of(directory, TRIALS)]
+    require_alike(", ".join(map(str, directories)), "topples", trials)
+    kept = ("scene", "height", "falling", "seed", "stands", "moved")
+    return pd.DataFrame(
+        {
+            **{name: getattr(trial, name) for name in kept},
+            "success": trial.success,
+            "farthest": max((landing.along for landing in trial.landings), default=float("nan")),
+        }
+        for trial in trials
+    )
 
 
 def size_table(trials: pd.DataFrame) -> pd.DataFrame:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pandas as pd
 
 from smash.problem.words import counted
-from smash.records.engines import require_one_engine, require_one_robot
+from smash.records.engines import require_alike
 from smash.records.episodes import EpisodeRecord
 from smash.records.files import EPISODES
 from smash_analysis import command
@@ -68,8 +68,7 @@ def told_episodes(records: Sequence[EpisodeRecord], where: str = "the records") 
         MixedEngines: Where they are of several engines.
         MixedRobots: Where they are of several robots.
     """
-    require_one_engine(where, "episodes", (record.engine for record in records))
-    require_one_robot(where, "episodes", (record.robot for record in records))
+    require_alike(where, "episodes", records)
     episodes = episodes_table(records)
     lost = episodes["failure"].isna() & ~episodes["success"]
     return episodes.assign(

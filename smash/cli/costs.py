@@ -31,21 +31,20 @@ def command(results: Path, instance: Path, scene: Path | None, out: Path | None)
     """
     require("smash costs", "pinocchio", "coal", "toppra", "scipy")
     from smash.execution.layout.unrolled import unrolled_positions
-    from smash.execution.scene.scene_file import default_scene, read_scene
+    from smash.execution.scene.scene_file import scene_of
     from smash.experiments.studies.durations import Duration, durations, fit
-    from smash.records.engines import require_one_engine, require_one_robot
+    from smash.records.engines import require_alike
     from smash.records.files import EPISODES, RUNS
     from smash.records.reading import read
     from smash.records.scenes import DEFAULT, require_one_scene
 
     problem = read_instance(instance)
-    tabletop = default_scene() if scene is None else read_scene(scene)
+    tabletop = scene_of(scene)
     positions = unrolled_positions(tabletop, problem)
     runs, episodes = read(results, RUNS), read(results, EPISODES)
     for note in (*runs.notes(), *episodes.notes()):
         click.echo(one_line(note), err=True)
-    require_one_engine(str(results), "episodes", (record.engine for record in episodes.records))
-    require_one_robot(str(results), "episodes", (record.robot for record in episodes.records))
+    require_alike(str(results), "episodes", episodes.records)
     require_one_scene(str(results), (record.scene or DEFAULT for record in episodes.records))
     filed = {run.key: run.instance_document for run in runs.records}
     measured: list[Duration] = []

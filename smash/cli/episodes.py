@@ -95,9 +95,9 @@ def command(
     if replays and dask is not None:
         raise click.UsageError("--replays goes with episodes here; `smash execute --replay` makes one of any episode")
     from smash.execution.physics.engines import engine_of
-    from smash.execution.scene.scene_file import default_scene, read_scene
+    from smash.execution.scene.scene_file import scene_of
 
-    engine = engine_of(default_scene() if scene is None else read_scene(scene), engine)
+    engine = engine_of(scene_of(scene), engine)
     file = None if scene is None else str(scene.resolve())
     changes = list(product(noises or (None,), paces or (None,)))
     runs = [

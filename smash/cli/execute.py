@@ -108,14 +108,14 @@ def command(
     if replanner is not None:
         _require_planner(replanner, no_replan)
     problem, filed = read_instance(instance), read_plan(plan)
-    from smash.execution.scene.scene_file import default_scene, read_scene
+    from smash.execution.scene.scene_file import scene_of
     from smash.execution.viewing.capture import Capture
     from smash.execution.viewing.film import film_of
     from smash.records.episodes import Performed, episode_text
 
     film = film_of(video_size, video_speed, video_camera)
     capture = Capture(replay=replay, video=video, stills=stills, trajectory=trajectory, looks=looks, film=film)
-    tabletop = default_scene() if scene is None else read_scene(scene)
+    tabletop = scene_of(scene)
     say_strangers(tabletop, problem)
     from rich.console import Console
     from rich.markup import escape

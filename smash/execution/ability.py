@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from smash.execution.actions.registry import MOTIONS
-from smash.execution.scene.piles import stations_used, tallest_piles
+from smash.execution.scene.piles import standing_piles, stations_used
 from smash.execution.scene.tabletop import DoesNotFit, Slot, Tabletop
 from smash.motion.robot import Robot
 from smash.problem.errors import Unsupported
@@ -41,15 +41,15 @@ def require_able(
                 f"robot {robot.name!r}: its first joint does not turn it about the vertical, "
                 f"which {type(action).__name__.lower()} needs: it keeps level what the hand carries"
             )
-    piles = tallest_piles(tabletop, law, actions)
-    needs = {place: (counted(len(pile), "block"), tabletop.tall(pile)) for place, pile in piles.items()}
-    needs |= dict.fromkeys(stations_used(law, actions), ("a carrier", tabletop.side))
+    needs = dict.fromkeys(stations_used(law, actions), ("a carrier", tabletop.side))
+    for place, piles in standing_piles(law, actions).items():
+        tallest = max(piles, key=tabletop.tall)
+        needs[place] = counted(len(tallest), "block"), tabletop.tall(tallest)
     for place, (what, height) in needs.items():
-        radius = places[place].radius
-        if height > robot.highest(radius) + 1e-9:
+        if not tabletop.reaches(places[place], height):
             raise DoesNotFit(
                 f"robot {robot.name!r} does not reach {what} at {place!r} of scene {tabletop.name!r}, "
-                f"{radius:.2f} m from its base; it reaches {_say(robot, tabletop.longest)}"
+                f"{places[place].radius:.2f} m from its base; it reaches {_say(robot, tabletop.longest)}"
             )
 
 

@@ -80,7 +80,7 @@ def arm_model(robot: Robot) -> kernel.Arm:
     base = [pair for pair in pairs if pair[1] < robot.forearm]
     wrist = [pair for pair in pairs if pair[1] >= robot.forearm]
     return kernel.Arm(
-        np.ascontiguousarray(robot.chain()),
+        robot.chain,
         np.ascontiguousarray(spheres),
         first,
         bounds,

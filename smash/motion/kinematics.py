@@ -10,7 +10,6 @@ from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from smash.motion.descent import descent
 from smash.motion.poses import ToolPose, Vector
@@ -59,7 +58,7 @@ def inverse(
 def descend(robot: Robot, pose: ToolPose, start: Vector, iterations: int = ITERATIONS) -> Vector | None:
     """One damped descent from `start` [rad], shape (n,): the solution, or None where it ends elsewhere."""
     reached, joints = descent(
-        _chain(robot),
+        robot.chain,
         robot.lower,
         robot.upper,
         np.ascontiguousarray(pose.rotation),
@@ -68,12 +67,6 @@ def descend(robot: Robot, pose: ToolPose, start: Vector, iterations: int = ITERA
         iterations,
     )
     return joints if reached else None
-
-
-@lru_cache
-def _chain(robot: Robot) -> NDArray[np.float64]:
-    """The robot's fixed transforms, shape (n + 1, 3, 4), as the compiled descent takes them."""
-    return np.ascontiguousarray(robot.chain())
 
 
 def along_line(

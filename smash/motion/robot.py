@@ -158,6 +158,7 @@ class Robot:
             pinocchio.computeFrameJacobian(self.model, self.data, joints, self.tool, pinocchio.LOCAL_WORLD_ALIGNED)
         )
 
+    @cached_property
     def chain(self) -> NDArray[np.float64]:
         """Fixed transforms along the arm, shape (n + 1, 3, 4).
 
@@ -235,11 +236,15 @@ class Robot:
         above = [height for known, height in self.heights if known > radius]
         return around[0] if around else min(below[-1], above[0])
 
+    def reach(self, least: float) -> tuple[float, float]:
+        """The least and the greatest measured distance from the base at which a pile may be so high [m]."""
+        radii = [radius for radius, height in self.heights if height >= least]
+        return radii[0], radii[-1]
+
     @property
     def full_reach(self) -> tuple[float, float]:
-        """The least and the greatest distance from the base at which a pile may be as high as anywhere [m]."""
-        radii = [radius for radius, height in self.heights if height == self.tallest]
-        return radii[0], radii[-1]
+        """The same for a pile that is as high as one may be anywhere [m]."""
+        return self.reach(self.tallest)
 
     @property
     def tallest(self) -> float:

@@ -4,8 +4,21 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
+from typing import Protocol
 
 from smash.problem.errors import SmashError
+
+
+class Simulated(Protocol):
+    """What says by what it was simulated, and with which robot."""
+
+    @property
+    def engine(self) -> str:
+        """Name of the engine."""
+
+    @property
+    def robot(self) -> str:
+        """Label of the robot."""
 
 
 class MixedEngines(SmashError):
@@ -27,33 +40,21 @@ def _several(where: str, what: str, kind: str, counts: Counter[str]) -> str:
     return f"{where}: {what} of several {kind} ({told}) make no table; keep each in a directory"
 
 
-def require_one_engine(where: str, what: str, engines: Iterable[str]) -> None:
-    """Refuse records of several engines.
+def require_alike(where: str, what: str, records: Iterable[Simulated]) -> None:
+    """Refuse records of several engines, or of several robots.
 
     Args:
         where: where they are from, for the message.
         what: what they are, for the message (`episodes`, `topples`).
-        engines: that of each.
+        records: of episodes or trials.
 
     Raises:
-        MixedEngines: where there are several.
+        MixedEngines: where there are several engines.
+        MixedRobots: where there are several robots.
     """
-    counts = Counter(engines)
-    if len(counts) > 1:
-        raise MixedEngines(where, what, counts)
-
-
-def require_one_robot(where: str, what: str, robots: Iterable[str]) -> None:
-    """Refuse records of several robots.
-
-    Args:
-        where: where they are from, for the message.
-        what: what they are, for the message.
-        robots: that of each.
-
-    Raises:
-        MixedRobots: where there are several.
-    """
-    counts = Counter(robots)
-    if len(counts) > 1:
-        raise MixedRobots(where, what, counts)
+    origins = [(record.engine, record.robot) for record in records]
+    engines, robots = (Counter(origin[part] for origin in origins) for part in (0, 1))
+    if len(engines) > 1:
+        raise MixedEngines(where, what, engines)
+    if len(robots) > 1:
+        raise MixedRobots(where, what, robots)

@@ -30,8 +30,8 @@ def impossible(places: Sequence[Place], side: float, robot: Robot) -> str | None
         if place.height > most:
             piled = f"location {place.location!r} has to take {place.height} blocks"
             return f"{piled}, and the arm reaches no higher than {most} anywhere"
-    reach = [radius for radius, height in robot.heights if height >= side]
-    return _too_many(places, side, min(reach), max(reach)) or _too_wide(places, side, max(reach))
+    nearest, farthest = robot.reach(side)
+    return _too_many(places, side, nearest, farthest) or _too_wide(places, side, farthest)
 
 
 def _too_many(places: Sequence[Place], side: float, nearest: float, farthest: float) -> str | None:

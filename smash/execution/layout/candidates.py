@@ -109,8 +109,7 @@ def candidates(place: Place, side: float, robot: Robot) -> Candidates:
 
 def ring(robot: Robot) -> tuple[float, float]:
     """Between which distances from the base the arm works at ease [m]: where it reaches half of its greatest height."""
-    radii = [radius for radius, height in robot.heights if height >= robot.tallest / 2]
-    return min(radii), max(radii)
+    return robot.reach(robot.tallest / 2)
 
 
 def _slots(place: Place, side: float, robot: Robot) -> Iterator[Slot]:

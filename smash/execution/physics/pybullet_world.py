@@ -5,9 +5,7 @@ Only a fresh connection with `deterministicOverlappingPairs` repeats an episode 
 
 from __future__ import annotations
 
-import ctypes
 import os
-import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
@@ -19,6 +17,7 @@ from smash.execution.physics.simulated_robot import simulated_robot
 from smash.execution.physics.window import furnish, require_display, words_to_stderr
 from smash.execution.physics.world import STEP, World
 from smash.execution.scene.block_pose import BlockPose, quaternion_of
+from smash.motion.quiet import redirected
 from smash.motion.robot import Robot
 from smash.motion.robots.composing import TOOL
 
@@ -222,20 +221,8 @@ class _Boxes:
 
 def connect(gui: bool) -> Any:
     """A new PyBullet connection, without the library's greetings on the user's output."""
-    sys.stdout.flush()
-    sys.stderr.flush()
-    kept = [os.dup(1), os.dup(2)]
-    silence = os.open(os.devnull, os.O_WRONLY)
-    try:
-        os.dup2(silence, 1)
-        os.dup2(silence, 2)
+    with open(os.devnull, "wb") as silence, redirected(silence.fileno(), 1, 2):
         import pybullet
         from pybullet_utils.bullet_client import BulletClient
 
         return BulletClient(connection_mode=pybullet.GUI if gui else pybullet.DIRECT)
-    finally:
-        ctypes.CDLL(None).fflush(None)
-        for number, copy in enumerate(kept, start=1):
-            os.dup2(copy, number)
-            os.close(copy)
-        os.close(silence)

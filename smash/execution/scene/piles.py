@@ -11,27 +11,19 @@ from smash.problem.model import Action, Instance, PositionsGoal, StacksGoal
 from smash.problem.rules import Law
 
 
-def highest_piles(law: Law, actions: Sequence[Action]) -> dict[str, int]:
-    """Return how many blocks stand at each location at most while a legal plan is carried out, where any do."""
-    highest: dict[str, int] = {}
+def standing_piles(law: Law, actions: Sequence[Action]) -> dict[str, list[tuple[str, ...]]]:
+    """Return the piles that stand at each location while a legal plan is carried out, each once, in their order."""
+    piles: dict[str, dict[tuple[str, ...], None]] = {}
     for state in law.states(actions):
         for location, pile in state.piles.items():
             if pile:
-                highest[location] = max(highest.get(location, 0), len(pile))
-    return highest
+                piles.setdefault(location, {})[tuple(pile)] = None
+    return {location: list(seen) for location, seen in piles.items()}
 
 
-def tallest_piles(tabletop: Tabletop, law: Law, actions: Sequence[Action]) -> dict[str, tuple[str, ...]]:
-    """Return the pile of each location that may be the tallest while a legal plan is carried out, where there is any.
-
-    Of blocks of unlike sizes the tallest one need not be the one with the most blocks.
-    """
-    tallest: dict[str, tuple[str, ...]] = {}
-    for state in law.states(actions):
-        for location, pile in state.piles.items():
-            if pile and tabletop.tall(pile) > tabletop.tall(tallest.get(location, ())):
-                tallest[location] = tuple(pile)
-    return tallest
+def highest_piles(law: Law, actions: Sequence[Action]) -> dict[str, int]:
+    """Return how many blocks stand at each location at most while a legal plan is carried out, where any do."""
+    return {location: max(map(len, piles)) for location, piles in standing_piles(law, actions).items()}
 
 
 def stations_used(law: Law, actions: Sequence[Action]) -> set[str]:
@@ -64,11 +56,11 @@ def piles_of_ends(instance: Instance) -> dict[str, int]:
 def misfits(tabletop: Tabletop, law: Law, actions: Sequence[Action]) -> Iterator[str]:
     """Yield, in words, what of a legal plan a scene that has a slot for every location has no room for."""
     slots = tabletop.bind(law.instance)
-    most, tallest = highest_piles(law, actions), tallest_piles(tabletop, law, actions)
+    standing = standing_piles(law, actions)
     for location, slot in slots.items():
-        high = most.get(location, 0)
-        if (slot.highest is not None and high > slot.highest) or not tabletop.has_room(slot, tallest.get(location, ())):
-            piled = f"the plan piles {high} blocks on {location!r}"
+        piles = standing.get(location, [])
+        if not all(tabletop.has_room(slot, pile) for pile in piles):
+            piled = f"the plan piles {max(map(len, piles))} blocks on {location!r}"
             yield f"{piled}; scene {tabletop.name!r} has room for {tabletop.room(slot)} there{WAY_OUT}"
     for location in largest_topples(law, actions):
         if not slots[location].directions:

@@ -246,7 +246,11 @@ class Tabletop:
     def has_room(self, slot: Slot, pile: Sequence[str]) -> bool:
         """Whether the arm reaches this pile at a slot, and the layout was made for so many blocks there."""
         made_for = slot.highest is None or len(pile) <= slot.highest
-        return made_for and self.tall(pile) <= load_robot(self.robot).highest(slot.radius) + 1e-9
+        return made_for and self.reaches(slot, self.tall(pile))
+
+    def reaches(self, slot: Slot, height: float) -> bool:
+        """Whether the arm works from above on what is so high [m] at a slot."""
+        return height <= load_robot(self.robot).highest(slot.radius) + 1e-9
 
     def strangers(self, instance: Instance) -> list[str]:
         """The blocks that the scene gives a size and the instance has not."""

@@ -15,10 +15,10 @@ import pinocchio
 from numpy.typing import NDArray
 
 from smash.motion.poses import Matrix, Vector
+from smash.motion.quiet import first_complaint, overheard
 from smash.motion.robot import HAND, SHIPPED, Hand, Robot
 from smash.motion.robots.composing import TOOL, Urdf, child_of, compose, number
 from smash.motion.robots.files import LEVEL, HandFile, PlaceFile, RobotFile, read_hand_file, read_robot_file
-from smash.motion.robots.quiet import first_complaint, overheard
 from smash.problem.errors import MalformedFile, SmashError
 
 DEFAULT_ROBOT = SHIPPED

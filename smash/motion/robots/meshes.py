@@ -11,8 +11,8 @@ import pinocchio
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from smash.motion.quiet import first_complaint, overheard
 from smash.motion.robot import Robot
-from smash.motion.robots.quiet import first_complaint, overheard
 from smash.problem.errors import MalformedFile
 
 MOST_TRIANGLES = 1400

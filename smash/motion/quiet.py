@@ -1,7 +1,8 @@
-"""Libraries that write what is wrong to standard error by themselves: kept from it, for an error of ours to say."""
+"""Libraries that write to standard output and standard error by themselves: kept from it."""
 
 from __future__ import annotations
 
+import ctypes
 import os
 import sys
 import tempfile
@@ -10,22 +11,32 @@ from contextlib import contextmanager
 
 
 @contextmanager
+def redirected(to: int, *numbers: int) -> Iterator[None]:
+    """Send to another descriptor what anybody, C libraries too, writes to these."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    kept = [os.dup(number) for number in numbers]
+    try:
+        for number in numbers:
+            os.dup2(to, number)
+        yield
+    finally:
+        ctypes.CDLL(None).fflush(None)
+        for number, copy in zip(numbers, kept, strict=True):
+            os.dup2(copy, number)
+            os.close(copy)
+
+
+@contextmanager
 def overheard() -> Iterator[Callable[[], str]]:
     """Keep standard error from what C++ writes to it; what the context gives tells what that was."""
-    sys.stderr.flush()
-    kept = os.dup(2)
-    with tempfile.TemporaryFile() as heard:
-        os.dup2(heard.fileno(), 2)
+    with tempfile.TemporaryFile() as heard, redirected(heard.fileno(), 2):
 
         def words() -> str:
             heard.seek(0)
             return heard.read().decode(errors="replace")
 
-        try:
-            yield words
-        finally:
-            os.dup2(kept, 2)
-            os.close(kept)
+        yield words
 
 
 def first_complaint(words: str, otherwise: str) -> str:
