@@ -180,17 +180,21 @@ def test_where_nothing_was_moved_unmeant_the_page_says_so(results):
     assert disturbed_table(read_episodes(results)).empty
 
 
+def two_kinds(folder, **other):
+    """Two episodes, the second with another engine or robot."""
+    records = [record("i", "topple", 60.0), {**record("i", "topple", 60.0, seed=1), **other}]
+    (folder / "episodes.jsonl").write_text("".join(json.dumps(entry) + "\n" for entry in records))
+
+
 def test_episodes_of_two_engines_make_no_table(tmp_path):
-    records = [record("i", "topple", 60.0), {**record("i", "topple", 60.0, seed=1), "engine": "mujoco"}]
-    (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(entry) + "\n" for entry in records))
+    two_kinds(tmp_path, engine="mujoco")
     words = r"episodes of several engines \(1 by mujoco, 1 by pybullet\) make no table"
     with pytest.raises(MixedEngines, match=words):
         read_episodes(tmp_path)
 
 
 def test_the_report_shows_each_engine_apart(tmp_path):
-    records = [record("i", "topple", 60.0), {**record("i", "topple", 60.0, seed=1), "engine": "mujoco"}]
-    (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(entry) + "\n" for entry in records))
+    two_kinds(tmp_path, engine="mujoco")
     sources = find_sources(tmp_path, tmp_path / "report")
     assert [source.title for source in sources] == [f"{tmp_path.name}, pybullet", f"{tmp_path.name}, mujoco"]
     assert [[each.seed for each in source.episodes] for source in sources] == [[0], [1]]
@@ -201,8 +205,7 @@ def test_the_report_shows_each_engine_apart(tmp_path):
 
 
 def test_episodes_of_two_robots_make_no_table_and_old_ones_are_the_panda_s(tmp_path):
-    records = [record("i", "topple", 60.0), {**record("i", "topple", 60.0, seed=1), "robot": "six-1234abcd"}]
-    (tmp_path / "episodes.jsonl").write_text("".join(json.dumps(entry) + "\n" for entry in records))
+    two_kinds(tmp_path, robot="six-1234abcd")
     words = r"episodes of several robots \(1 by panda, 1 by six-1234abcd\) make no table"
     with pytest.raises(MixedRobots, match=words):
         read_episodes(tmp_path)

@@ -47,3 +47,16 @@ def swapped_plan():
 
 def plan_of(instance, *actions):
     return Plan(instance, "by hand", PlanOptions(), "feasible", actions)
+
+
+def piles_of(**start):
+    """Piles of one-letter blocks on three stacks, which may be lifted four at a time; nothing is wanted."""
+    return make_instance(
+        name="piles",
+        blocks=[block for pile in start.values() for block in pile],
+        stacks=["s1", "s2", "s3"],
+        buffers=["u1"],
+        start=start,
+        goal=PositionsGoal({}),
+        capacities={"lift": 4},
+    )

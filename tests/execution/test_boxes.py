@@ -45,7 +45,7 @@ from smash.problem import (
 )
 from smash.problem.errors import SmashError
 from smash.problem.rules import Law
-from tests.execution.episodes import plan_of
+from tests.execution.episodes import piles_of, plan_of
 from tests.robots import PANDA, READY
 
 ROOT = Path(__file__).parents[2]
@@ -53,19 +53,6 @@ FLAT, TALL = BlockSize(0.05, 0.03, 0.1), BlockSize(0.04, 0.06, 0.1)
 SCENE = dataclasses.replace(default_scene(), name="boxes", sizes={"a": FLAT, "b": TALL})
 ON_ITS_SIDE = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
 """The height lies along the world's x axis."""
-
-
-def boxes(**start):
-    blocks = [block for pile in start.values() for block in pile]
-    return make_instance(
-        name="boxes",
-        blocks=blocks,
-        stacks=["s1", "s2", "s3"],
-        buffers=["u1"],
-        start=start,
-        goal=PositionsGoal({}),
-        capacities={"lift": 4},
-    )
 
 
 def laid_out(instance, scene=SCENE):
@@ -102,7 +89,7 @@ def test_equal_blocks_are_as_many_levels_as_there_are():
 
 
 def test_a_pile_of_unlike_boxes_stands_as_high_as_its_blocks_and_is_read_back():
-    instance = boxes(s1="abc")
+    instance = piles_of(s1="abc")
     where = laid_out(instance)
     assert [where.blocks[b].position[2] for b in "abc"] == pytest.approx([0.015, 0.06, 0.09 + 0.0225])
     assert read_state(where, SCENE).piles["s1"] == list("abc")
@@ -113,7 +100,7 @@ def test_a_pile_of_unlike_boxes_stands_as_high_as_its_blocks_and_is_read_back():
 
 
 def test_a_box_that_stands_on_a_lying_one_is_read_back_too():
-    where = laid_out(boxes(s1="ba"))
+    where = laid_out(piles_of(s1="ba"))
     x, y = where.point("s1")
     where.blocks["b"] = BlockPose(np.array([x, y, 0.02]), ON_ITS_SIDE)
     where.blocks["a"] = standing(x, y, 0.055, 0.0)
@@ -141,7 +128,7 @@ def test_what_would_meet_the_palm_is_not_held_by_a_leaning_hand():
 
 def test_after_a_topple_what_is_done_with_a_box_is_a_gap_task_without_a_promise():
     """A cube's place keeps its promise: it is as high on any face."""
-    instance = boxes(s1="ac")
+    instance = piles_of(s1="ac")
     actions = [Topple("s1", 1), Pick("c", "table"), Place("c", "s2"), Pick("a", "table"), Place("a", "s3")]
     actions += [Pick("a", "s3"), Place("a", "u1"), Pick("c", "s2"), Place("c", "u1")]
     tasks = Grounder(ArmMotions(SCENE)).ground(actions, Law(instance), laid_out(instance), READY)
@@ -155,14 +142,14 @@ def test_after_a_topple_what_is_done_with_a_box_is_a_gap_task_without_a_promise(
 
 
 def test_a_scene_of_cubes_with_sizes_keeps_its_promises():
-    instance = boxes(s1="cd")
+    instance = piles_of(s1="cd")
     actions = [Topple("s1", 1), Pick("d", "table"), Place("d", "s2"), Pick("c", "table"), Place("c", "s3")]
     tasks = Grounder(ArmMotions(SCENE)).ground(actions, Law(instance), laid_out(instance), READY)
     assert [task.approach is not None for task in tasks if isinstance(task.action, Place)] == [True, True]
 
 
 def test_without_a_topple_everything_is_planned_with_boxes_too():
-    instance = boxes(s1="ab")
+    instance = piles_of(s1="ab")
     actions = [Pick("b", "s1"), Place("b", "s2"), Pick("a", "s1"), Place("a", "s2")]
     tasks = Grounder(ArmMotions(SCENE)).ground(actions, Law(instance), laid_out(instance), READY)
     assert all(task.segments for task in tasks)
@@ -170,7 +157,7 @@ def test_without_a_topple_everything_is_planned_with_boxes_too():
 
 
 def test_a_push_comes_in_above_the_blocks_that_stay_and_before_the_widest_that_falls():
-    arm, where = ArmMotions(SCENE), laid_out(boxes(s1="abc"))
+    arm, where = ArmMotions(SCENE), laid_out(piles_of(s1="abc"))
     fall = fall_of(arm, list("abc"), 2, where)
     assert fall.blocks == ("b", "c")
     assert fall.tip == pytest.approx(0.03 + 0.2 * 0.06)
@@ -182,7 +169,7 @@ def test_a_push_comes_in_above_the_blocks_that_stay_and_before_the_widest_that_f
 
 def test_pushes_are_counted_by_height_where_blocks_are_no_cubes():
     scene = dataclasses.replace(default_scene(), sizes={name: BlockSize(0.05, 0.07, 0.1) for name in "abcdef"})
-    arm, where = ArmMotions(scene), laid_out(boxes(s1="abcdef"), scene)
+    arm, where = ArmMotions(scene), laid_out(piles_of(s1="abcdef"), scene)
     tall = cubes_high(arm, "abcdef", where)
     assert sum(tall) == pytest.approx(0.42 / 0.045)
     assert first_cut(2, tall) == 5
@@ -191,7 +178,7 @@ def test_pushes_are_counted_by_height_where_blocks_are_no_cubes():
 
 
 def test_a_lift_of_boxes_is_planned_and_foreseen():
-    instance = boxes(s1="cab", s2="d")
+    instance = piles_of(s1="cab", s2="d")
     where, state, arm = laid_out(instance), State.start_of(instance), ArmMotions(SCENE)
     action, motion = Lift("s1", 2, "s2"), LiftMotion()
     held = [part for part in motion.plan(arm, READY, action, state, where) if isinstance(part, Move)]
@@ -202,7 +189,7 @@ def test_a_lift_of_boxes_is_planned_and_foreseen():
 
 def test_noise_in_size_changes_both_edges_alike_and_mass_follows_the_box():
     scene = dataclasses.replace(SCENE, noise=Noise(size=0.001))
-    made = Chance(scene, boxes(s1="abc"), 3).made
+    made = Chance(scene, piles_of(s1="abc"), 3).made
     for name, size in (("a", FLAT), ("b", TALL), ("c", scene.block)):
         assert made[name].footprint - size.footprint == pytest.approx(made[name].height - size.height)
         assert made[name].mass == size.mass
@@ -258,9 +245,9 @@ def test_piles_of_a_map_are_drawn_from_the_boxes_of_the_scene():
 
 def test_a_pile_is_limited_by_its_height_as_the_boxes_may_lie():
     scene = dataclasses.replace(default_scene(), sizes={name: BlockSize(0.05, 0.07, 0.1) for name in "abcdefgh"})
-    (problem,) = misfits(scene, Law(boxes(s1="abcdefgh")), ())
+    (problem,) = misfits(scene, Law(piles_of(s1="abcdefgh")), ())
     assert problem.startswith("the plan piles 8 blocks on 's1'; scene 'default' has room for 7 there")
-    assert list(misfits(scene, Law(boxes(s1="abcdefg")), ())) == []
+    assert list(misfits(scene, Law(piles_of(s1="abcdefg")), ())) == []
 
 
 def test_the_conditions_hold_for_the_scene_of_boxes_and_not_for_wider_ones():
@@ -291,9 +278,9 @@ def test_boxes_stand_in_the_cells_of_a_tray_at_their_own_heights():
 
 def test_what_stands_upright_is_seen_as_high_as_what_is_below_it():
     scene = dataclasses.replace(SCENE, noise=Noise(pose=0.002))
-    where = laid_out(boxes(s1="abc"), scene)
+    where = laid_out(piles_of(s1="abc"), scene)
     world = SimpleNamespace(tabletop=scene, time=0.0, poses=lambda: where.blocks, carriers=dict)
-    seen = Sight(world, Chance(scene, boxes(s1="abc"), 1)).blocks()
+    seen = Sight(world, Chance(scene, piles_of(s1="abc"), 1)).blocks()
     assert [seen[block].position[2] for block in "abc"] == pytest.approx([0.015, 0.06, 0.1125])
 
 

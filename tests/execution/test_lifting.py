@@ -19,21 +19,8 @@ from smash.motion.errors import NoIk
 from smash.motion.move import Move
 from smash.problem import Lift, Pick, Place, PositionsGoal, State, make_instance
 from smash.problem.errors import ExecutionFailure
-from tests.execution.episodes import plan_of
+from tests.execution.episodes import piles_of, plan_of
 from tests.robots import PANDA, READY
-
-
-def two_piles(**start):
-    blocks = [block for pile in start.values() for block in pile]
-    return make_instance(
-        name="piles",
-        blocks=blocks,
-        stacks=["s1", "s2", "s3"],
-        buffers=["u1"],
-        start=start,
-        goal=PositionsGoal({}),
-        capacities={"lift": 4},
-    )
 
 
 def lifted(instance, action, scene=None, **elsewhere):
@@ -48,7 +35,7 @@ def lifted(instance, action, scene=None, **elsewhere):
 
 @pytest.mark.parametrize("height", [1, 2, 3])
 def test_a_pile_is_held_at_one_tilt_all_the_way(height):
-    segments, after = lifted(two_piles(s1="abcd", s2="e"), Lift("s1", height, "s2"))
+    segments, after = lifted(piles_of(s1="abcd", s2="e"), Lift("s1", height, "s2"))
     assert after.piles["s2"] == [*"e", *"abcd"[height - 1 :]]
     tilts = [
         acos(-PANDA.forward(joints).rotation[2, 2])
@@ -61,7 +48,7 @@ def test_a_pile_is_held_at_one_tilt_all_the_way(height):
 
 def test_a_pile_out_of_reach_is_a_named_failure():
     with pytest.raises(NoIk, match="block 'a' from the side"):
-        lifted(two_piles(s1="ab"), Lift("s1", 1, "s2"), s1=Slot(0.95, 0.5))
+        lifted(piles_of(s1="ab"), Lift("s1", 1, "s2"), s1=Slot(0.95, 0.5))
 
 
 def test_a_pile_that_is_walled_in_is_a_named_failure():
@@ -91,7 +78,7 @@ def test_a_pile_that_is_walled_in_is_a_named_failure():
 @pytest.mark.slow
 @pytest.mark.parametrize(("height", "seed"), [(1, 0), (2, 1), (3, 2)])
 def test_a_lifted_pile_arrives_in_its_order(height, seed):
-    instance = two_piles(s1="abcd", s2="e")
+    instance = piles_of(s1="abcd", s2="e")
     actions = [Lift("s1", height, "s2"), Pick("d", "s2"), Place("d", "s3")]
     episode = Executor(instance, plan_of("piles", *actions), default_scene(), seed=seed, policy=OPEN).run()
     assert episode.success, episode.failure

@@ -7,6 +7,7 @@ episode whose guardian or simulation was killed is recorded without one, and car
 import json
 import subprocess
 import sys
+from functools import partial
 
 import pytest
 
@@ -14,7 +15,7 @@ from smash.problem import write_instance
 from smash.problem.extras import is_there
 from smash.records.files import EPISODES
 from tests.execution.episodes import swapped_pair
-from tests.experiments.test_kills import Killer, cluster, disturbed, gone, sweep, whole_lines
+from tests.experiments.test_kills import Killer, cluster, disturbed_on_dask, gone, sweep, whole_lines
 
 pytestmark = [
     pytest.mark.slow,
@@ -67,18 +68,11 @@ def test_twenty_kills_of_episodes_on_dask(sweep_file, tmp_path):
     killer = Killer(3, str(tmp_path), kinds)
     rounds = 0
     while killer.left:
-        out, rounds, seen = tmp_path / f"out-{rounds}", rounds + 1, set()
+        out, rounds = tmp_path / f"out-{rounds}", rounds + 1
         running = sweep(sweep_file, out)
         _, said = running.communicate(timeout=300)
         assert running.returncode == 0, said
-        done = False
-        while killer.left and not done:
-            with cluster(tmp_path, f"{rounds}-{len(killer.left)}") as scheduler:
-                more, done = disturbed(
-                    out / EPISODES.name, killer, lambda out=out, where=scheduler: episodes(out, where)
-                )
-                seen |= more
-            assert gone(tmp_path) == ([], [], [])
+        seen = disturbed_on_dask(tmp_path, rounds, out / EPISODES.name, killer, partial(episodes, out))
         with cluster(tmp_path, f"{rounds}-end") as scheduler:
             check_round(out, scheduler, seen)
         assert gone(tmp_path) == ([], [], [])

@@ -13,6 +13,7 @@ import sys
 import time
 from collections import Counter
 from contextlib import contextmanager, suppress
+from functools import partial
 
 import psutil
 import pytest
@@ -211,20 +212,26 @@ def cluster(tmp_path, number):
         scheduler.wait()
 
 
+def disturbed_on_dask(folder, name, file, killer, start):
+    """Disturb what `start` starts at a scheduler, on cluster after cluster, until it is done; return the lines seen."""
+    seen, done = set(), False
+    while killer.left and not done:
+        with cluster(folder, f"{name}-{len(killer.left)}") as scheduler:
+            more, done = disturbed(file, killer, partial(start, scheduler))
+            seen |= more
+        assert gone(folder) == ([], [], [])
+    return seen
+
+
 def test_forty_kills_on_dask(experiment, tmp_path):
     kinds = {"worker": 12, "sweep": 10, "scheduler": 4, "guardian": 6, "planner": 4, "server": 4}
     killer = Killer(2, str(tmp_path), kinds)
     rounds = 0
     while killer.left:
-        out, rounds, seen = tmp_path / f"out-{rounds}", rounds + 1, set()
-        done = False
-        while killer.left and not done:
-            with cluster(tmp_path, f"{rounds}-{len(killer.left)}") as scheduler:
-                more, done = disturbed(
-                    out / RUNS.name, killer, lambda out=out, where=scheduler: sweep(experiment, out, "--dask", where)
-                )
-                seen |= more
-            assert gone(tmp_path) == ([], [], [])
+        out, rounds = tmp_path / f"out-{rounds}", rounds + 1
+        seen = disturbed_on_dask(
+            tmp_path, rounds, out / RUNS.name, killer, lambda where, out=out: sweep(experiment, out, "--dask", where)
+        )
         with cluster(tmp_path, f"{rounds}-end") as scheduler:
             check_round(experiment, out, seen, "--dask", scheduler)
         assert gone(tmp_path) == ([], [], [])

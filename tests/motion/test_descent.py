@@ -11,7 +11,7 @@ def configurations(count, seed=3):
 
 
 def test_the_compiled_jacobian_is_pinocchio_s():
-    arm, chain = PANDA, np.ascontiguousarray(PANDA.chain())
+    arm, chain = PANDA, PANDA.chain
     for joints in configurations(50):
         known = pinocchio.computeFrameJacobian(arm.model, arm.data, joints, arm.tool, pinocchio.LOCAL)
         assert np.allclose(tool_jacobian(link_frames(chain, joints)), known, atol=1e-10)
@@ -32,7 +32,7 @@ def test_the_error_of_a_pose_is_the_logarithm_of_the_motion_to_it():
 
 
 def test_a_descent_that_says_so_has_reached_its_target_within_the_limits():
-    arm, chain = PANDA, np.ascontiguousarray(PANDA.chain())
+    arm, chain = PANDA, PANDA.chain
     ends = []
     for start, goal in zip(configurations(40), configurations(40, seed=5), strict=True):
         target = arm.forward(goal)
