@@ -14,7 +14,7 @@ from smash.cli.choices import budget_option, check_command, command_option, enco
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.isolation.job import DEFAULT_MEMORY, Job, Report
 from smash.experiments.planning import failure
-from smash.experiments.weighing import run_job
+from smash.experiments.weighing.weighed import run_job
 from smash.forecast.model import read_model
 from smash.planners.protocol import ACTIONS, HIGHS, MOST_THREADS, OBJECTIVES, SOLVERS, OnIncumbent, Settings
 from smash.planners.registry import COMMAND, DEFAULT, why_unknown

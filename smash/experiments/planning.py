@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from smash.experiments.isolation.job import Job, Report
-from smash.experiments.weighing import run_job, weighed, weighs
+from smash.experiments.weighing.weighed import run_job, weighed, weighs
 from smash.planners.protocol import ACTIONS, OBJECTIVES, Settings, ask
 from smash.planners.registry import DEFAULT, get_planner, make_ready
 from smash.problem.arguments import text, truth, whole_number

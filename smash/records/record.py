@@ -10,6 +10,7 @@ from typing import Annotated, Any, TypeVar
 
 import msgspec
 
+from smash.problem.files.typed import typed, typed_json
 from smash.problem.words import visible
 
 T = TypeVar("T")
@@ -79,11 +80,11 @@ def decoded(line: bytes, kind: type[T]) -> T:
     if any(mark in line for mark in _CLOSING) and _DEEP.search(line):
         raise ValueError("nested too deeply")
     try:
-        return _kept(msgspec.json.decode(line, type=kind), "line", line)
+        return _kept(typed_json(line, kind), "line", line)
     except msgspec.DecodeError:
         pass  # what Python writes and strict JSON does not have (lone surrogates), or no record: see below
     document = json.loads(line, parse_float=_finite, parse_constant=_finite)
-    return _kept(msgspec.convert(document, kind), "document", document)
+    return _kept(typed(document, kind), "document", document)
 
 
 def shown(record: R) -> R:
@@ -92,9 +93,7 @@ def shown(record: R) -> R:
     if line is not None and line.isascii() and b"\\" not in line and b"\x7f" not in line:
         return record
     document = {name: part if name == "log" else _visible(part) for name, part in record.document.items()}
-    return (
-        record if document == record.document else _kept(msgspec.convert(document, type(record)), "document", document)
-    )
+    return record if document == record.document else _kept(typed(document, type(record)), "document", document)
 
 
 def _finite(text: str) -> float:

@@ -1,6 +1,7 @@
 """Plans are weighed: what planners are asked, and what is said of the plan that is chosen."""
 
 from dataclasses import replace
+from threading import Event
 from types import SimpleNamespace
 
 import msgspec
@@ -9,7 +10,9 @@ import pytest
 import smash as door
 from smash.experiments.isolation.job import Job, Report, still_running
 from smash.experiments.sweeps.sweep import weighed_or_not
-from smash.experiments.weighing import _Weighing, weighed
+from smash.experiments.weighing.apart import NotChosen, Weighing, chosen_apart
+from smash.experiments.weighing.choosing import Choice, Question, _Choosing, choose
+from smash.experiments.weighing.weighed import weighed
 from smash.forecast.expected import Forecaster
 from smash.forecast.model import default_model
 from smash.forecast.search import Candidate
@@ -44,6 +47,10 @@ class Asked:
         self.jobs.append(part)
         plan = ask(get_planner(part.planner), part.problem, part.settings, part.budget, name=part.planner)
         return Report(self.outcome or plan.status, plan, wall_seconds=0.01)
+
+
+def asking(instance, *starts, **how):
+    return Question(job(instance, **how), starts, spent=0.1, proven=True)
 
 
 def test_the_plan_without_topple_is_among_the_choices(instance):
@@ -155,7 +162,7 @@ def test_nothing_more_is_asked_of_a_run_that_is_stopped(instance):
 
 
 def test_no_motion_is_warmed_up_for_a_planner_that_there_is_not(instance, monkeypatch):
-    monkeypatch.setattr("smash.experiments.weighing._rehearsal", lambda job, model: pytest.fail("warmed up"))
+    monkeypatch.setattr("smash.experiments.weighing.weighed.ready", lambda question, model: pytest.fail("warmed up"))
     with pytest.raises(UnknownPlanner):
         weighed(job(instance, planner="nobody"), Asked(), None)
 
@@ -169,7 +176,58 @@ def test_every_action_without_a_motion_is_trouble(instance):
         def of(self, problem, actions, seed):
             return [SimpleNamespace(action=action, seconds=None) for action in actions]
 
-    weighing = _Weighing(job(instance), forecaster, Missed(), None, 0.0, lambda: False)
+    weighing = _Choosing(asking(instance, actions), forecaster, Missed(), 0.0, lambda: False)
     known = sum(step.seconds + (1 - step.risk) * default_model().trouble for step in forecaster.steps(actions))
     assert weighing._seconds(candidate, 0) == pytest.approx(known)
     assert known > len(actions) * default_model().trouble
+
+
+@pytest.fixture(scope="module")
+def start(instance):
+    return ask(get_planner("smash"), Problem(instance), Settings(), 2.0, name="smash").actions
+
+
+def test_a_process_of_its_own_is_told_all_that_there_is_to_know(instance, start):
+    work = Weighing(asking(instance, start, start[:2]), ELSEWHERE)
+    told = Weighing.from_document(msgspec.json.decode(msgspec.json.encode(work.document())))
+    assert (told.question.starts, told.question.spent, told.question.proven) == ((start, start[:2]), 0.1, True)
+    assert told.question.job.document() == work.question.job.document()
+    assert told.model == ELSEWHERE
+    assert work.budget > 2.0 - 0.1
+    assert work.memory == work.question.job.memory
+
+
+def test_plans_are_chosen_in_a_process_of_its_own_as_here(instance, start):
+    question = asking(instance, start, objective="actions", robust=True)
+    apart = chosen_apart(question, ELSEWHERE, None)
+    here = choose(question, Forecaster(question.job.problem, ELSEWHERE), None)
+    assert (apart.actions, apart.details["risk"]) == (here.actions, pytest.approx(here.details["risk"]))
+    assert apart.expected_seconds is here.expected_seconds is None
+    fastest = chosen_apart(asking(instance, start, budget=0.3), ELSEWHERE, None)
+    assert fastest.expected_seconds > 0.0
+    assert fastest.details["weighed"] == "by the outcome model alone"
+
+
+def test_a_process_that_weighs_ends_where_it_is_stopped(instance, start):
+    stop = Event()
+    stop.set()
+    with pytest.raises(NotChosen) as refusal:
+        chosen_apart(asking(instance, start, budget=60.0), ELSEWHERE, stop)
+    assert refusal.value.interrupted
+
+
+@pytest.mark.parametrize(("interrupted", "outcome"), [(True, "interrupted"), (False, "crashed")])
+def test_what_ends_the_weighing_is_the_end_of_the_run_and_its_plan_is_kept(instance, interrupted, outcome):
+    def broken(question):
+        raise NotChosen("weighing its plans: out of memory", interrupted)
+
+    report = weighed(job(instance), Asked(), ELSEWHERE, choose_by=broken)
+    assert (report.outcome, report.reason) == (outcome, "weighing its plans: out of memory")
+    assert check_plan(instance, report.plan).accepted
+
+
+def test_the_time_of_choosing_counts(instance):
+    def third(question):
+        return Choice(question.starts[0], 0.7, {}, 1.0)
+
+    assert weighed(job(instance), Asked(), ELSEWHERE, choose_by=third).wall_seconds == pytest.approx(0.02 + 0.7)

@@ -30,7 +30,7 @@ def nine():
 @pytest.fixture
 def forecast_alone(monkeypatch):
     """No motion is rehearsed: `tests/execution` does that."""
-    monkeypatch.setattr("smash.experiments.weighing._rehearsal", lambda job, model: None)
+    monkeypatch.setattr("smash.experiments.weighing.weighed.ready", lambda question, model: None)
 
 
 def forecaster(instance, **options):

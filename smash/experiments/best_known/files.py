@@ -16,6 +16,7 @@ from smash.problem.files.data import data_folder, shipped
 from smash.problem.files.documents import read_bytes, write_text
 from smash.problem.files.instances import instance_document
 from smash.problem.files.plans import plan_text
+from smash.problem.files.typed import typed
 from smash.problem.model import Action, Instance
 from smash.problem.plan import Incumbent, Plan
 
@@ -145,7 +146,7 @@ def _found(row: dict[str, str], prefix: str, where: str) -> Found | None:
 
 def _converted(document: dict[str, Any], kind: Any, where: str) -> Any:
     try:
-        return msgspec.convert(document, kind, strict=False)
+        return typed(document, kind, strict=False)
     except msgspec.ValidationError as error:
         raise MalformedFile(where, str(error)) from None
 

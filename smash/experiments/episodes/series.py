@@ -23,6 +23,7 @@ from smash.experiments.episodes.simulation import Simulation
 from smash.experiments.isolation.hearing import done
 from smash.problem.errors import SmashError
 from smash.problem.files.instances import instance_from_document
+from smash.problem.files.typed import typed
 from smash.problem.model import Instance, PositionsGoal
 from smash.records.believing import judge
 from smash.records.episodes import EPISODE_RUN_FORMAT, ROBOT, Episode, EpisodeRecord
@@ -160,7 +161,7 @@ def run_episode(run: EpisodeRun, stop: Event | None = None) -> EpisodeRecord | N
     ended = done(Simulation(run), stop)
     if ended.interrupted:
         return None
-    episode = None if ended.answer is None else msgspec.convert(ended.answer, Episode)
+    episode = None if ended.answer is None else typed(ended.answer, Episode)
     return _record(run, episode, ended.reason, started, perf_counter() - begun, before)
 
 

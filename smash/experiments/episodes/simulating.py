@@ -15,6 +15,7 @@ from smash.experiments.episodes.simulation import Simulation
 from smash.experiments.isolation.voice import Voice, to_its_end
 from smash.problem.extras import MissingExtra, missing_extra
 from smash.problem.files.instances import instance_from_document
+from smash.problem.files.typed import typed
 from smash.records.episodes import Episode, episode_text
 from smash.records.trials import Trial
 
@@ -91,4 +92,4 @@ def topple(run: TrialRun) -> Trial:
 def _tabletop(document: dict[str, Any]) -> Tabletop:
     from smash.execution.scene.tabletop import Tabletop
 
-    return msgspec.convert(document, Tabletop)
+    return typed(document, Tabletop)

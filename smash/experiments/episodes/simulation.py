@@ -9,6 +9,7 @@ import msgspec
 
 from smash.experiments.episodes.question import EpisodeRun, TrialRun
 from smash.experiments.isolation.job import DEFAULT_MEMORY
+from smash.problem.files.typed import typed
 
 LONGEST = 900.0
 """Seconds of wall time after which a simulation is given up."""
@@ -32,5 +33,5 @@ class Simulation:
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Self:
         """Build it from its JSON data."""
-        question = msgspec.convert(document["question"], EpisodeRun | TrialRun)
+        question = typed(document["question"], EpisodeRun | TrialRun)
         return cls(question, document["budget"], document["memory"])

@@ -11,6 +11,7 @@ from smash.experiments.episodes.question import TrialRun
 from smash.experiments.episodes.simulation import Simulation
 from smash.experiments.isolation.hearing import done
 from smash.problem.errors import SmashError
+from smash.problem.files.typed import typed
 from smash.records.trials import Trial, simulated
 
 
@@ -48,4 +49,4 @@ def run_apart(run: TrialRun, stop: Event | None = None) -> Trial | None:
         _, stack, height, falling, seed = run.key
         which = f"cut {height}, {falling} falling, stack {stack}, seed {seed}"
         raise SmashError(f"a trial's process ended badly ({which}): {ended.reason}; start again, the others are kept")
-    return msgspec.convert(ended.answer, Trial)
+    return typed(ended.answer, Trial)

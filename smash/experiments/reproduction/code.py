@@ -20,7 +20,7 @@ GROUND = frozenset({"smash/problem", "smash/records"})
 ANALYSIS = GROUND | {"smash_analysis"}
 PLANNING = GROUND | {
     *("smash/gadget", "smash/planners", "smash/forecast", "smash_baselines", "domains", "smash/cli/sweep.py"),
-    *(f"smash/experiments/{name}" for name in ("environment.py", "isolation", "sweeps", "studies", "weighing.py")),
+    *(f"smash/experiments/{name}" for name in ("environment.py", "isolation", "sweeps", "studies", "weighing")),
 }
 EVERYTHING = frozenset({"smash", "smash_baselines", "smash_analysis", "domains"})
 ROOMS = {

@@ -18,7 +18,7 @@ from typing import Protocol, TypeVar
 from smash.experiments.environment import commit, load, machine, versions
 from smash.experiments.isolation.job import Job, Report
 from smash.experiments.sweeps.experiment import Run
-from smash.experiments.weighing import run_job
+from smash.experiments.weighing.weighed import run_job
 from smash.problem.errors import Interrupted, SmashError, Unsupported
 from smash.problem.files.instances import instance_document
 from smash.problem.plan import Plan

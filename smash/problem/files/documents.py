@@ -14,6 +14,7 @@ from typing import Any, Literal, get_args, get_origin
 import msgspec
 
 from smash.problem.errors import MalformedFile
+from smash.problem.files.typed import typed
 
 
 def parse_json(text: str | bytes, where: str) -> Any:
@@ -144,7 +145,7 @@ def convert(document: Any, kind: Any, where: str) -> Any:
         MalformedFile: with the place and, for an unknown key, the allowed ones.
     """
     try:
-        return msgspec.convert(document, kind)
+        return typed(document, kind)
     except UnicodeEncodeError:
         raise MalformedFile(where, "a key is no Unicode text (half of a surrogate pair)") from None
     except RecursionError:
