@@ -36,6 +36,8 @@ LEGEND = (
     "clock, so that other work on the machine does not count; those of task planning (TP) are by the wall's clock, and "
     "so is replanning: the planner's time during an episode, which execution (simulated) does not hold."
 )
+NAMED = ["disturbed", "touched", "aside"]
+"""Blocks that an action names which are no part of it."""
 DISTURBED = (
     "Blocks that an action moved by more than 2 cm, or that the arm touched, although the action is not about them; "
     "each counts once for each such action. Records older than these fields hold none."
@@ -215,11 +217,12 @@ def failure_table(episodes: pd.DataFrame) -> pd.DataFrame:
 def disturbed_table(episodes: pd.DataFrame) -> pd.DataFrame:
     """Return a row per setting with blocks that were moved or touched by an action they are no part of.
 
-    `disturbed` and `touched` count such blocks, once for each action that did it.
+    `disturbed` and `touched` count such blocks, once for each action that did it; `aside` those that lay on a block
+    that was picked, and were set aside first.
     """
     columns = ["suite", "label", "variant", "policy"]
-    counts = episodes.assign(episodes=(episodes["disturbed"] + episodes["touched"]).fillna(0) > 0)
-    table = counts.groupby(columns)[["episodes", "disturbed", "touched"]].sum().reset_index()
+    counts = episodes.assign(episodes=episodes[NAMED].sum(axis=1) > 0)
+    table = counts.groupby(columns)[["episodes", *NAMED]].sum().reset_index()
     return table[table["episodes"] > 0]
 
 

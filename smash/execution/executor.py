@@ -246,7 +246,7 @@ class Executor:
 
     def _note(self, row: Performed, part: Collection[str]) -> None:
         """Record what an action has moved and touched that it is not about."""
-        row.disturbed |= self.watch.disturbed(self.world.poses(), part)
+        row.disturbed |= self.watch.disturbed(self.world.poses(), {*part, *row.aside})
         row.touched += [block for block in self.world.touched() if block not in row.touched]
         self.performer.sight.forget({*part, *row.touched})
         self.noticed = self.noticing.disturbed(self.performer.look().blocks, part)

@@ -6,7 +6,8 @@ block is in the hand.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from math import hypot, inf
 
 import numpy as np
@@ -21,10 +22,12 @@ from smash.execution.observer import Observer
 from smash.execution.physics.world import World
 from smash.execution.policy import Policy
 from smash.execution.readback import read_state
+from smash.execution.scene.block_pose import standing
 from smash.execution.scene.geometry import Geometry
+from smash.execution.scene.region import covering, free_places
 from smash.execution.sight import MEMORY
 from smash.execution.stopwatch import Stopwatch
-from smash.motion.errors import NoIk
+from smash.motion.errors import NoIk, NoMotion
 from smash.motion.move import Move
 from smash.problem.errors import ExecutionFailure
 from smash.problem.model import TABLE, Aggregating, Pick, Place, State
@@ -45,6 +48,8 @@ MOVED = 0.004
 """A block this far from where a motion was planned for [m] needs a new one."""
 SCENE_ALLOWANCE = 0.006
 """Motions planned offline may come this much closer to revealed blocks than planned [m]."""
+PLACES = 12
+"""Places in the table region that are tried for a block that lies on another."""
 MOST_MOTIONS = 5
 """An aggregating action is not repeated more often than this: what it leaves undone then, the law's state tells."""
 
@@ -147,7 +152,7 @@ class Performer:
                     self.study(grasped)
         if task.segments is None or not self._usable(task, state):
             row.repaired = row.repaired or task.segments is not None
-            task = self._planned(task, state, row)
+            task = self._within_reach(task, state, row)
         segments = task.segments or []
         match task.action:
             case Pick(block, _):
@@ -182,15 +187,69 @@ class Performer:
                 return
             segments = self._planned(Task(action, None), state, row).segments or []
 
+    def _within_reach(self, task: Task, state: State, row: Performed) -> Task:
+        """Plan an action online; a pick from the table region that finds no room, once what lies on the block is away.
+
+        To the law all blocks of the table region lie side by side: that one has come to rest on another is for the
+        arm to mend, as part of the pick.
+        """
+        try:
+            return self._planned(task, state, row)
+        except NoMotion:
+            if not isinstance(task.action, Pick) or task.action.source != TABLE:
+                raise
+            block, where = task.action.block, self.look()
+            above = covering(block, state.table, where.blocks, self.world.tabletop.size(block).height)
+            if not above:
+                raise
+        for name in above:
+            row.aside.append(name)
+            self._set_aside(name, row)
+        return self._planned(task, state, row)
+
+    def _set_aside(self, block: str, row: Performed) -> None:
+        """Pick a block that lies on others, and put it down beside them, in the table region.
+
+        Raises:
+            ExecutionFailure: where it cannot be picked, or there is no place for it.
+        """
+        hand, arm = self.grounder.pick_and_place, self.grounder.arm
+        self.study(block)
+        where = self.look()
+        pose = where.blocks[block]
+        with _counted(row):
+            segments, grasp = hand.pick(self.world.commanded(), block, pose, arm.around(where))
+        follow(self.world, segments)
+        self._require_grasp(block, grasp)
+        self.hand, self.grasp = block, grasp
+        where = self.look()
+        with _counted(row):
+            segments = self._put_down(block, pose.yaw, where)
+        follow(self.world, segments)
+        self.hand = None
+        self.world.wait(PAUSE)
+        self.world.settle()
+
+    def _put_down(self, block: str, yaw: float, where: Geometry) -> list[Segment]:
+        """Plan to put the held block into the table region, at the nearest place that the arm comes to.
+
+        Raises:
+            NoMotion: where there is none.
+        """
+        hand, arm, joints = self.grounder.pick_and_place, self.grounder.arm, self.world.commanded()
+        scene, middle = arm.around(where), arm.height(block, where) / 2
+        for x, y in free_places(self.world.tabletop, where, block)[:PLACES]:
+            try:
+                way = hand.landing(joints, block, standing(x, y, middle, yaw), scene, self.grasp)
+                return hand.place(joints, block, way, scene)
+            except ExecutionFailure:
+                continue
+        raise NoMotion(f"no room in the table region to set block {block!r} aside")
+
     def _planned(self, task: Task, state: State, row: Performed) -> Task:
         """Plan an action online and add the time that it takes to the record."""
-        watch = Stopwatch()
-        try:
-            with watch:
-                return self._plan_online(task, state)
-        finally:
-            row.times.online += watch.wall
-            row.times.online_cpu += watch.cpu
+        with _counted(row):
+            return self._plan_online(task, state)
 
     def _plan_online(self, task: Task, state: State) -> Task:
         """Plan an action from the observed scene and the arm's present state."""
@@ -246,6 +305,18 @@ class Performer:
             return
         self.world.grip(self.grounder.arm.opening(grasp.width), OPEN_SECONDS)
         raise Slip(f"block {block!r} is {away * 100:.1f} cm from the fingers after the grasp")
+
+
+@contextmanager
+def _counted(row: Performed) -> Iterator[None]:
+    """Add what planning online takes to an action's times."""
+    watch = Stopwatch()
+    try:
+        with watch:
+            yield
+    finally:
+        row.times.online += watch.wall
+        row.times.online_cpu += watch.cpu
 
 
 def _stands_on(block: str, target: str, state: State) -> bool:

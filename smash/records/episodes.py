@@ -47,6 +47,7 @@ class Performed(msgspec.Struct, kw_only=True):
         gap: Whether it was a gap task, planned only when its pose was known.
         repaired: Whether a motion planned before was planned again because the scene had changed.
         disturbed: Blocks that were moved by more than 2 cm and are no part of the action, and how far [m].
+        aside: Blocks that lay on the one that was picked, and were set aside first.
         touched: Blocks that arm or hand touched outside of a grasp or push that was meant for them.
         times: Of this action.
     """
@@ -62,6 +63,7 @@ class Performed(msgspec.Struct, kw_only=True):
     repaired: bool = False
     disturbed: dict[str, float] = {}
     touched: list[str] = []
+    aside: list[str] = []
     times: Times = msgspec.field(default_factory=Times)
 
 

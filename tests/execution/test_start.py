@@ -5,8 +5,9 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from smash.execution.scene.region import REGION_APART
 from smash.execution.scene.scene_file import default_scene
-from smash.execution.scene.start import JITTER, LARGEST, REGION_APART, TURN, starting_carriers, starting_poses
+from smash.execution.scene.start import JITTER, LARGEST, TURN, starting_carriers, starting_poses
 from smash.execution.scene.tabletop import DoesNotFit
 from smash.problem import Carrier, PositionsGoal, make_instance
 from tests.execution.scooping import scoop, scoop_scene

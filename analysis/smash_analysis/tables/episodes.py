@@ -22,7 +22,9 @@ EPISODE_TYPES = {
     **dict.fromkeys(("budget", "first_plan_seconds", "best_plan_seconds"), "float64"),
     "success": "boolean",
     **dict.fromkeys(("failure", "failure_reason"), "string"),
-    **dict.fromkeys(("failure_step", "actions_executed", "replans", "retries", "disturbed", "touched"), "Int64"),
+    **dict.fromkeys(
+        ("failure_step", "actions_executed", "replans", "retries", "disturbed", "touched", "aside"), "Int64"
+    ),
     **{f"{name}_seconds": "float64" for name in (*TIMES, "task")},
     "problem": "string",
     "wall_seconds": "float64",
@@ -39,7 +41,7 @@ ACTION_TYPES = {
     **dict.fromkeys(("origin", "outcome", "reason"), "string"),
     "attempts": "Int64",
     **dict.fromkeys(("gap", "repaired"), "boolean"),
-    **dict.fromkeys(("disturbed", "touched"), "string"),
+    **dict.fromkeys(("disturbed", "touched", "aside"), "string"),
     "begun_seconds": "float64",
     **{f"{name}_seconds": "float64" for name in TIMES},
 }
@@ -50,8 +52,8 @@ def episodes_table(records: Sequence[EpisodeRecord]) -> pd.DataFrame:
     """Return one row an episode: the record's plain fields, the episode's, what it failed of, its times [s].
 
     `disturbed` counts the blocks that were moved by an action they are no part of, once for each such action;
-    `touched` those that the arm touched unmeant. Where a process ended without an episode `success` is false, and
-    `problem` says why.
+    `touched` those that the arm touched unmeant, `aside` those that lay on a block that was picked, and were set aside
+    first. Where a process ended without an episode `success` is false, and `problem` says why.
     """
     return _typed([_episode_row(record) for record in records], EPISODE_TYPES)
 
@@ -67,7 +69,7 @@ def _episode_row(record: EpisodeRecord) -> dict[str, Any]:
         "failure_reason": None if failure is None else failure.reason,
         "failure_step": None if failure is None else failure.step,
         **{name: getattr(episode, name, None) for name in ("actions_executed", "replans", "retries")},
-        **{name: _named(episode, name) for name in ("disturbed", "touched")},
+        **{name: _named(episode, name) for name in ("disturbed", "touched", "aside")},
         **{f"{name}_seconds": getattr(times, name, None) for name in (*TIMES, "task")},
         "load_before": before,
         "load_after": after,
@@ -80,7 +82,7 @@ def _episode_row(record: EpisodeRecord) -> dict[str, Any]:
 
 
 def _named(episode: Episode | None, what: str) -> int | None:
-    """How many blocks its actions name as disturbed or touched."""
+    """How many blocks its actions name as disturbed, touched or set aside."""
     return None if episode is None else sum(len(getattr(performed, what)) for performed in episode.actions)
 
 
@@ -96,6 +98,7 @@ def actions_table(records: Sequence[EpisodeRecord]) -> pd.DataFrame:
             **named(performed.action),
             "disturbed": json.dumps(performed.disturbed),
             "touched": json.dumps(performed.touched),
+            "aside": json.dumps(performed.aside),
             "begun_seconds": performed.begun,
             **{f"{name}_seconds": getattr(performed.times, name) for name in TIMES},
         }

@@ -9,6 +9,7 @@ import numpy as np
 
 from smash.execution.scene.block_pose import BlockPose, standing
 from smash.execution.scene.block_size import levels
+from smash.execution.scene.region import REGION_APART, REGION_HALF_WIDTH, REGION_LENGTH
 from smash.execution.scene.tabletop import DoesNotFit, Slot, Tabletop
 from smash.problem.model import Instance
 
@@ -18,12 +19,6 @@ TURN = 0.01
 """Standard deviation of its yaw [rad]."""
 LARGEST = 2.0
 """Jitter is cut off at so many standard deviations."""
-REGION_LENGTH = (0.09, 0.30)
-"""Blocks that start in the table region lie so far along a stack's topple direction [m], ..."""
-REGION_HALF_WIDTH = 0.05
-"""... so far aside of it, ..."""
-REGION_APART = 2.0
-"""... and so many sides of the widest block apart."""
 
 
 def starting_carriers(instance: Instance, stations: Mapping[str, Slot], tabletop: Tabletop) -> dict[str, BlockPose]:
