@@ -22,7 +22,7 @@ from smash.execution.scene.block_pose import BlockPose, standing
 from smash.execution.scene.block_size import BlockSize, levels
 from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.noise import Chance, Noise
-from smash.execution.scene.piles import misfits
+from smash.execution.scene.piles import misfits, needs_of
 from smash.execution.scene.scene_file import default_scene, read_scene, scene_from_document
 from smash.execution.scene.start import starting_carriers, starting_poses
 from smash.execution.scene.tabletop import Slot
@@ -245,9 +245,9 @@ def test_piles_of_a_map_are_drawn_from_the_boxes_of_the_scene():
 
 def test_a_pile_is_limited_by_its_height_as_the_boxes_may_lie():
     scene = dataclasses.replace(default_scene(), sizes={name: BlockSize(0.05, 0.07, 0.1) for name in "abcdefgh"})
-    (problem,) = misfits(scene, Law(piles_of(s1="abcdefgh")), ())
+    (problem,) = misfits(scene, piles_of(s1="abcdefgh"), needs_of(Law(piles_of(s1="abcdefgh")), ()))
     assert problem.startswith("the plan piles 8 blocks on 's1'; scene 'default' has room for 7 there")
-    assert list(misfits(scene, Law(piles_of(s1="abcdefg")), ())) == []
+    assert list(misfits(scene, piles_of(s1="abcdefg"), needs_of(Law(piles_of(s1="abcdefg")), ()))) == []
 
 
 def test_the_conditions_hold_for_the_scene_of_boxes_and_not_for_wider_ones():

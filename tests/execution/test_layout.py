@@ -21,7 +21,7 @@ from smash.execution.layout.laying import NoLayout, NotFound, lay_out
 from smash.execution.layout.rectangles import Rectangles
 from smash.execution.layout.wanted import Place, places_of_instance, places_of_plan
 from smash.execution.policy import OPEN
-from smash.execution.scene.piles import highest_piles, largest_topples, misfits, piles_of_ends
+from smash.execution.scene.piles import misfits, needs_of, piles_of_ends
 from smash.execution.scene.scene_file import (
     DEFAULT_SCENE,
     default_scene,
@@ -197,8 +197,8 @@ OPTIONS = (PlanOptions(), PlanOptions(max_topple=2), PlanOptions(topple=False))
 
 def test_piles_are_counted_as_the_law_carries_a_plan_out():
     law, actions = Law(buried_target()), buried_plan().actions
-    assert highest_piles(law, actions) == {"s1": 4, "g": 1}
-    assert largest_topples(law, actions) == {"s1": 3}
+    assert needs_of(law, actions).highest == {"s1": 4, "g": 1}
+    assert needs_of(law, actions).topples == {"s1": 3}
     assert piles_of_ends(law.instance)["g"] == 1
 
 
@@ -225,8 +225,8 @@ def test_more_blocks_than_the_arm_can_pile_up_are_no_hindrance_where_no_pile_is_
     assert set(default_scene().bind(instance)) == {"s1", "s2"}
     law = Law(instance)
     higher = [action for n in range(3) for action in (Pick(f"b{19 - n}", "s2"), Put(f"b{19 - n}", "s1"))]
-    assert list(misfits(default_scene(), law, higher[:4])) == []
-    (problem,) = misfits(default_scene(), law, higher)
+    assert list(misfits(default_scene(), instance, needs_of(law, higher[:4]))) == []
+    (problem,) = misfits(default_scene(), instance, needs_of(law, higher))
     assert "13 blocks on 's1'" in problem
     assert "room for 12" in problem
 

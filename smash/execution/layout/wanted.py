@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from smash.execution.scene.piles import highest_piles, largest_topples, piles_of_ends
+from smash.execution.scene.piles import needs_of, piles_of_ends
 from smash.problem.model import Action, Instance, PlanOptions
 from smash.problem.rules import Law
 
@@ -35,9 +35,10 @@ def places_of_plan(law: Law, actions: Sequence[Action], most: int) -> list[Place
         actions: The plan.
         most: The most blocks of a pile that the arm reaches anywhere.
     """
-    heights, falls = highest_piles(law, actions), largest_topples(law, actions)
+    needs = needs_of(law, actions)
+    heights = needs.highest
     spare = {name: max(heights.get(name, 0), min(heights.get(name, 0) + 1, most)) for name in law.instance.locations}
-    return [Place(name, height, falls.get(name, 0)) for name, height in spare.items()]
+    return [Place(name, height, needs.topples.get(name, 0)) for name, height in spare.items()]
 
 
 def places_of_instance(instance: Instance, options: PlanOptions, height: int, buffer_height: int) -> list[Place]:
