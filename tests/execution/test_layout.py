@@ -17,6 +17,7 @@ from smash.execution.executor import Executor
 from smash.execution.layout.bounds import impossible
 from smash.execution.layout.candidates import SPACINGS, candidates
 from smash.execution.layout.conditions import violations
+from smash.execution.layout.judging import problems_of_plan
 from smash.execution.layout.laying import NoLayout, NotFound, lay_out
 from smash.execution.layout.rectangles import Rectangles
 from smash.execution.layout.wanted import Place, places_of_instance, places_of_plan
@@ -312,6 +313,22 @@ def test_a_scene_that_is_written_is_read_again(slot, name):
         *(slot.radius, slot.directions, slot.highest, slot.falling),
     )
     assert again.angle == pytest.approx(slot.angle, abs=1e-6)
+
+
+def test_what_is_null_in_a_scene_of_json_is_left_out_of_its_toml():
+    document = {**DOCUMENT, "robot": None, "block": {"side": 0.04, "height": None}, "blocks": {"a": {"mass": None}}}
+    text = scene_toml(with_slots(document, "x", default_scene().stacks, []))
+    assert scene_from_document(tomllib.loads(text)) == dataclasses.replace(
+        scene_from_document(document), name="x", buffers=()
+    )
+
+
+def test_a_layout_in_which_blocks_that_lie_on_the_table_have_no_room_is_judged_bad():
+    instance = make_instance(
+        name="lying", blocks=list("ab"), stacks=["s1"], start={"s1": ["a"]}, table=["b"], goal=PositionsGoal({})
+    )
+    (problem,) = problems_of_plan(with_stacks(Slot(0.45, 0.0)), Law(instance), ())
+    assert problem.startswith("the table region of scene")
 
 
 def layout(folder, *arguments):

@@ -116,8 +116,17 @@ def read_scene(path: str | os.PathLike[str]) -> Tabletop:
     Raises:
         MalformedFile: with one line that says where and what is allowed.
     """
-    where = os.fspath(path)
-    return scene_from_document(_parse(read_bytes(path), where), where)
+    return scene_from_document(scene_document(path), os.fspath(path))
+
+
+def scene_document(path: str | os.PathLike[str]) -> Any:
+    """Return what stands in a scene file, as `scene_from_document` checks it.
+
+    Raises:
+        MalformedFile: where it cannot be read, or is neither TOML nor JSON, as its name says.
+    """
+    where, content = os.fspath(path), read_bytes(path)
+    return parse_toml(content, where) if where.endswith(".toml") else parse_json(content, where)
 
 
 @cache
@@ -136,7 +145,7 @@ def scene_from_document(document: Any, where: str = "scene") -> Tabletop:
     if document.get("base") == "default":
         if "name" not in document:
             raise MalformedFile(where, "missing `name`: a scene with a base has one of its own")
-        document = {**_parse(read_bytes(DEFAULT_SCENE), str(DEFAULT_SCENE)), **document}
+        document = {**scene_document(DEFAULT_SCENE), **document}
     file = cast(_SceneFile, convert(document, _SceneFile, where))
     if not file.stacks:
         raise MalformedFile(where, "`stacks`: at least one is needed")
@@ -261,22 +270,6 @@ def scene_of(
         named = os.fspath(robot)
         scene = scene.with_robot(os.path.abspath(named) if named.endswith(".toml") else named)
     return scene
-
-
-def scene_document(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """Return the document of a scene file that is well formed.
-
-    Raises:
-        MalformedFile: as `read_scene`.
-    """
-    where = os.fspath(path)
-    document = _parse(read_bytes(path), where)
-    scene_from_document(document, where)
-    return dict(document)
-
-
-def _parse(content: bytes, where: str) -> Any:
-    return parse_toml(content, where) if where.endswith(".toml") else parse_json(content, where)
 
 
 def _refuse_overlap(table: Tabletop, where: str) -> None:
