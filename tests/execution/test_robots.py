@@ -1,6 +1,7 @@
 """Another arm at the same table: worlds, refusals before anything moves, what is written of it."""
 
 import dataclasses
+from itertools import product
 
 import numpy as np
 import pytest
@@ -111,6 +112,9 @@ def test_a_scene_names_its_robot_beside_it(path, tmp_path):
     assert table.fingerprint != dataclasses.replace(table, robot=None).fingerprint
     scene.write_text(scene.read_text().replace("six.toml", "seven.toml"))
     with pytest.raises(MalformedFile, match=r"seven\.toml: cannot be read"):
+        read_scene(scene)
+    scene.write_text(scene.read_text().replace("seven.toml", "seven"))
+    with pytest.raises(MalformedFile, match=r"scene\.toml: robot: there is none called 'seven'"):
         read_scene(scene)
 
 

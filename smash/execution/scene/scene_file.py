@@ -27,11 +27,14 @@ DEFAULT_SCENE = Path(__file__).parent / "default.toml"
 LEAST_APART = 1.5
 """Middles of two slots are so many sides apart, or the file is refused."""
 
+MOST_BLOCKS = 100
+"""The most blocks of a pile, or of a topple, that a slot is made for: more than any arm reaches."""
+
 HEAVIEST = 1.0
 """The most that a block weighs [kg]."""
 
 _Share = Annotated[float, msgspec.Meta(ge=SLOWEST, le=1.0)]
-_Count = Annotated[int, msgspec.Meta(ge=1)]
+_Count = Annotated[int, msgspec.Meta(ge=1, le=MOST_BLOCKS)]
 _Coefficient = Annotated[float, msgspec.Meta(gt=0.0, le=2.0)]
 
 
@@ -172,9 +175,23 @@ def scene_from_document(document: Any, where: str = "scene") -> Tabletop:
         tray, stations = Tray(table.longest, **msgspec.to_builtins(file.tray)), file.stations
         table = replace(table, tray=tray, stations=tuple(Slot(s.radius, radians(s.angle)) for s in stations))
     if file.robot is not None:
-        table = table.with_robot(beside(file.robot, where))
+        table = _with_robot(table, file.robot, where)
     _refuse_overlap(table, where)
     return table
+
+
+def _with_robot(table: Tabletop, robot: str, where: str) -> Tabletop:
+    """The same table with the robot that its file names.
+
+    Raises:
+        MalformedFile: where there is none of that name, its own file is malformed, or it cannot hold the blocks.
+    """
+    try:
+        return table.with_robot(beside(robot, where))
+    except MalformedFile:
+        raise
+    except SmashError as error:
+        raise MalformedFile(where, str(error)) from None
 
 
 def _usual(file: _BlockFile, where: str) -> BlockSize:
