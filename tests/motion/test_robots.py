@@ -54,6 +54,12 @@ def test_the_corners_of_a_hand_are_those_of_its_meshes_where_its_file_has_none(t
     assert hand.finger == pytest.approx(PANDA.hand.finger, abs=1e-3)
 
 
+def test_a_hand_is_as_thick_as_on_the_side_where_it_stands_out_most(tmp_path):
+    path = written(tmp_path, hand=[("palm = [[-0.0317", "palm = [[-0.0500"), ("[0.0106, 0.0265", "[0.0206, 0.0265")])
+    assert (PANDA.hand.palm_thickness, PANDA.hand.finger_thickness) == (0.0317, 0.0106)
+    assert (load_robot(path).hand.palm_thickness, load_robot(path).hand.finger_thickness) == (0.05, 0.0206)
+
+
 def test_an_arm_of_six_joints_with_any_axes_has_one_kinematics(six):
     assert six.count == 6
     assert six.upright

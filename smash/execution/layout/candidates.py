@@ -155,7 +155,7 @@ def _of(slots: list[Slot], place: Place, side: float, robot: Robot) -> Candidate
     heading = np.array([slot.heading(slot.directions[0]) for slot in slots])
     axes = np.stack([np.cos(heading), np.sin(heading)], axis=1).reshape(-1, 2)
     room, palm = strip(place.falling), np.abs(robot.hand.palm).max(axis=0)
-    begin = -(RUN_UP + side / 2 + 2 * palm[0])
+    begin = -(RUN_UP + side / 2 + 2 * robot.hand.palm_thickness)
     end = (SWEEP.follow_through - 0.5) * side
     strips = _along(middles, axes, side / 2, room.length, room.half_width)
     return Candidates(tuple(slots), middles, strips, _along(middles, axes, begin, end, palm[1]))
