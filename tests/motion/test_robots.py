@@ -224,6 +224,16 @@ REFUSED = (
         r"`fingers`: what moves in the URDF is panda_",
     ),
     (None, None, None, ("speed = 0.2", "grip = 1"), r"grip|speed"),
+    (None, None, None, ("speed = 0.2", "speed = inf"), r"`speed`: finite numbers"),
+    (None, None, None, ("palm = [[-0.0317", "palm = [[-inf"), r"`boxes.palm`: finite numbers"),
+    ('name = "six"', 'name = "six\\n"', None, None, r"`name`"),
+    ("[reach]", "[mount]\nrpy = [nan, 0, 0]\n[reach]", None, None, r"`mount.rpy`: finite numbers"),
+    ("[0.70, 6]", "[inf, 6]", None, None, r"`reach.heights`: finite numbers"),
+    ("[0.70, 6]", "[0.70, 1000]", None, None, r"<= 100 - at `reach.heights"),
+    ('spheres = "six.csv"', 'spheres = "six.toml"', None, None, r"`arm.spheres`: .* ends in \.csv"),
+    ('base = "ground"', 'base = "flange"', None, None, r"the URDF has none"),
+    (None, None, ('size="0.08 0.08 0.42"', 'size="inf 0.08 0.42"'), None, r"component \[inf\]"),
+    (None, None, ('ixx="0.1"', 'ixx="thick"'), None, r"inertia element ixx is not a valid double"),
 )
 
 
