@@ -180,6 +180,8 @@ def test_files_of_an_episode_are_of_its_robot(path, tmp_path):
         "/six_arm_controller/joint_trajectory",
         "/panda_hand_controller/joint_trajectory",
     )
+    hyphened = dataclasses.replace(robot, name="my-arm")
+    assert arm_topic(hyphened) == "/my_arm_arm_controller/joint_trajectory"
     samples = [(step / 480, robot.ready, 0.04) for step in range(1, 20)]
     write_trajectory(tmp_path / "t.csv", robot.joints, thinned(samples))
     assert (tmp_path / "t.csv").read_text().startswith("time,pan,lift,elbow,wrist1,wrist2,wrist3,finger_opening\n")
