@@ -62,4 +62,4 @@ def _say(robot: Robot, side: float) -> str:
             if levels[start][1]:
                 words.append(f"{levels[start][1]} from {levels[start][0]:.2f} to {levels[index - 1][0]:.2f} m")
             start = index
-    return ", ".join(words)
+    return ", ".join(words) or "no block anywhere"

@@ -20,7 +20,7 @@ from smash.execution.layout.conditions import violations
 from smash.execution.layout.judging import problems_of_plan
 from smash.execution.layout.laying import NoLayout, NotFound, lay_out
 from smash.execution.layout.rectangles import Rectangles
-from smash.execution.layout.wanted import Place, places_of_instance, places_of_plan
+from smash.execution.layout.wanted import Place, in_cubes, places_of_instance, places_of_plan
 from smash.execution.policy import OPEN
 from smash.execution.scene.piles import misfits, needs_of, piles_of_ends
 from smash.execution.scene.scene_file import (
@@ -313,6 +313,23 @@ def test_a_scene_that_is_written_is_read_again(slot, name):
         *(slot.radius, slot.directions, slot.highest, slot.falling),
     )
     assert again.angle == pytest.approx(slot.angle, abs=1e-6)
+
+
+def test_a_strip_is_as_long_as_the_highest_boxes_of_the_scene_ask_for():
+    tall = dataclasses.replace(default_scene(), height=0.07)
+    place = in_cubes(Place("s1", 4, 3), tall)
+    assert (place.strip, place.judged) == (strip(5), strip(5))
+    assert in_cubes(Place("s1", 4, 3), default_scene()) == Place("s1", 4, 3)
+    pool = candidates(place, tall.longest, ROBOT)
+    assert pool.strips is None or pool.strips.half[1] == strip(5).half_width
+    assert len(pool.slots) < len(candidates(Place("s1", 4, 3), tall.longest, ROBOT).slots)
+
+
+@pytest.mark.slow
+def test_a_layout_of_boxes_keeps_both_conditions_as_the_boxes_are():
+    tall = dataclasses.replace(default_scene(), height=0.06)
+    found = lay_out(Law(buried_target()), tall, buried_plan().actions)
+    assert violations(found.tabletop) == []
 
 
 def test_what_is_null_in_a_scene_of_json_is_left_out_of_its_toml():
