@@ -73,11 +73,12 @@ def command(
             raise RefusedPlan(f"the plan for {problem.name!r}: {verdict}")
         options, actions = filed.options, filed.actions or ()
     from smash.execution.layout.laying import ATTEMPTS, Layout, lay_out
-    from smash.execution.scene.scene_file import DEFAULT_SCENE, scene_document, scene_of
+    from smash.execution.scene.scene_file import DEFAULT_SCENE, scene_document, scene_from_document, scene_of
     from smash.execution.scene.scene_writing import scene_toml, with_slots
 
-    tabletop = scene_of(scene, robot=robot)
-    document = scene_document(DEFAULT_SCENE if scene is None else scene)
+    path = DEFAULT_SCENE if scene is None else scene
+    document = scene_document(path)
+    tabletop = scene_of(scene_from_document(document, str(path)), robot=robot)
     if tabletop.robot is not None:
         document["robot"] = tabletop.robot
     found: Layout = lay_out(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from smash.problem.errors import MalformedFile
+from smash.problem.errors import MalformedFile, SmashError
 from smash.problem.extras import require
 from smash.problem.files.documents import require_writable, write_text
 
@@ -61,9 +61,13 @@ def _fit(robot: Robot) -> None:
 
     Raises:
         MalformedFile: where the file names none.
+        SmashError: where the robot is shipped: everybody's episodes rest on its table.
     """
     from smash.motion.fit_spheres import fitted
+    from smash.motion.robots import robot_names
 
+    if robot.label in robot_names():
+        raise SmashError(f"--fit: {robot.name!r} is shipped with its table; copy its files to fit them anew")
     if robot.spheres is None:
         raise MalformedFile(str(robot.path), "missing `arm.spheres`: the table to write, relative to this file")
     require_writable(robot.spheres)

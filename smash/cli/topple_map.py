@@ -78,7 +78,7 @@ def command(
     from smash.execution.scene.scene_file import scene_of
     from smash.execution.trials.calibration import calibrations, require_comparable, table
     from smash.execution.trials.estimates import ENOUGH, TRUSTED, write_estimates
-    from smash.execution.trials.outcome_model import outcome_model, require_cubes
+    from smash.execution.trials.outcome_model import outcome_model, require_modelled
     from smash.execution.trials.topple_map import draw, estimates
     from smash.experiments.episodes.simulation import LONGEST
     from smash.experiments.episodes.topple_trials import run_apart, wanted_trials
@@ -93,7 +93,7 @@ def command(
     require_writable(model)
     tabletop = scene_of(scene, robot=robot)
     if model is not None:
-        require_cubes(tabletop)
+        require_modelled(tabletop)
     named, engine = engine, engine_of(tabletop, engine)
     say_engine(engine, tabletop, named)
     chosen_seeds = range(first_seed, first_seed + seeds)

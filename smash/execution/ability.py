@@ -5,20 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from smash.execution.actions.registry import MOTIONS
-from smash.execution.scene.piles import standing_piles, stations_used
+from smash.execution.scene.piles import Needs
 from smash.execution.scene.tabletop import DoesNotFit, Slot, Tabletop
 from smash.motion.robot import Robot
 from smash.problem.errors import Unsupported
 from smash.problem.model import Action, Aggregating
-from smash.problem.rules import Law
 from smash.problem.words import counted
 
 
 def require_able(
     robot: Robot,
     tabletop: Tabletop,
-    law: Law,
     actions: Sequence[Action],
+    needs: Needs,
     places: Mapping[str, Slot],
 ) -> None:
     """Refuse a plan with piles where the arm does not reach, or with actions that it has no motion for.
@@ -26,8 +25,8 @@ def require_able(
     Args:
         robot: The robot.
         tabletop: The scene.
-        law: Of the instance.
         actions: A plan that the law accepts.
+        needs: What it asks of the places.
         places: The slots of locations and stations.
 
     Raises:
@@ -41,11 +40,11 @@ def require_able(
                 f"robot {robot.name!r}: its first joint does not turn it about the vertical, "
                 f"which {type(action).__name__.lower()} needs: it keeps level what the hand carries"
             )
-    needs = dict.fromkeys(stations_used(law, actions), ("a carrier", tabletop.side))
-    for place, piles in standing_piles(law, actions).items():
+    asked = dict.fromkeys(needs.stations, ("a carrier", tabletop.side))
+    for place, piles in needs.piles.items():
         tallest = max(piles, key=tabletop.tall)
-        needs[place] = counted(len(tallest), "block"), tabletop.tall(tallest)
-    for place, (what, height) in needs.items():
+        asked[place] = counted(len(tallest), "block"), tabletop.tall(tallest)
+    for place, (what, height) in asked.items():
         if not tabletop.reaches(places[place], height):
             raise DoesNotFit(
                 f"robot {robot.name!r} does not reach {what} at {place!r} of scene {tabletop.name!r}, "
@@ -63,4 +62,4 @@ def _say(robot: Robot, side: float) -> str:
             if levels[start][1]:
                 words.append(f"{levels[start][1]} from {levels[start][0]:.2f} to {levels[index - 1][0]:.2f} m")
             start = index
-    return ", ".join(words)
+    return ", ".join(words) or "no block anywhere"

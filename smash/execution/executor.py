@@ -26,7 +26,7 @@ from smash.execution.readback import NOWHERE, fallen_off
 from smash.execution.recovery import Recovery
 from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.noise import Chance
-from smash.execution.scene.piles import misfits
+from smash.execution.scene.piles import misfits, needs_of
 from smash.execution.scene.start import starting_carriers, starting_poses
 from smash.execution.scene.tabletop import DoesNotFit, Tabletop
 from smash.execution.sight import Sight
@@ -106,8 +106,9 @@ class Executor:
         self.table = Geometry(tabletop.bind(instance), tabletop.bind_stations(instance))
         self.arm = ArmMotions(tabletop, seed)
         places = {**self.table.slots, **self.table.stations}
-        require_able(self.arm.robot, tabletop, self.law, plan.actions or (), places)
-        for misfit in misfits(tabletop, self.law, plan.actions or ()):
+        actions, needs = plan.actions or (), needs_of(self.law, plan.actions or ())
+        require_able(self.arm.robot, tabletop, actions, needs, places)
+        for misfit in misfits(tabletop, instance, needs):
             raise DoesNotFit(misfit)
         self.chance = Chance(tabletop, instance, seed)
         self.grounder = Grounder(self.arm, self.chance.astray)
@@ -335,8 +336,9 @@ class Executor:
         asked = (options, replace(options, topple=False)) if options.topple else (options,)
         for allowed in asked if failed < TOPPLES_FAILED else reversed(asked):
             actions, law = self.replanner(instance, allowed), Law(instance, self.plan.options)
-            fits = actions is not None and law.check(actions).accepted and not any(misfits(self.tabletop, law, actions))
-            if fits:
+            if actions is None or not law.check(actions).accepted:
+                continue
+            if not any(misfits(self.tabletop, instance, needs_of(law, actions))):
                 return actions
         return None
 

@@ -62,6 +62,16 @@ class Hand:
     tip: float
 
     @property
+    def palm_thickness(self) -> float:
+        """How far the palm stands out from the tool's axis along x, to the side where it does so most [m]."""
+        return float(np.abs(self.palm[:, 0] - self.tool[0]).max())
+
+    @property
+    def finger_thickness(self) -> float:
+        """The same of the fingers [m]."""
+        return float(np.abs(self.finger[:, 0] - self.tool[0]).max())
+
+    @property
     def palm_depth(self) -> float:
         """From the palm's end to the tool frame's origin, along z [m]."""
         return float(self.tool[2] - self.palm[1, 2])

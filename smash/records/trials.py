@@ -6,6 +6,7 @@ from typing import Final, Literal
 
 import msgspec
 
+from smash.records.episodes import ROBOT
 from smash.records.record import Record
 
 TRIAL_FORMAT: Final = "smash-topple-trial/1"
@@ -54,7 +55,7 @@ class Trial(Record, kw_only=True, frozen=True):
     scene: str
     layout: str = ""
     engine: str = "pybullet"
-    robot: str = "panda"
+    robot: str = ROBOT
     stack: int
     height: int
     falling: int

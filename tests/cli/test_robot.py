@@ -50,6 +50,11 @@ def test_spheres_are_fitted_and_written(tmp_path, monkeypatch):
     assert (tmp_path / "six.csv").read_text().startswith("link,x,y,z,radius\nground,")
 
 
+def test_the_table_of_a_robot_that_is_shipped_is_left_alone(capfd, monkeypatch):
+    code, line = refused(capfd, monkeypatch, "robot", "panda", "--fit")
+    assert (code, "'panda' is shipped with its table" in line) == (2, True)
+
+
 def test_one_urdf_is_written(tmp_path):
     said("robot", "panda", "--urdf", tmp_path / "p.urdf")
     assert ET.parse(tmp_path / "p.urdf").getroot().get("name") == "panda"

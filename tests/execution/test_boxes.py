@@ -22,13 +22,13 @@ from smash.execution.scene.block_pose import BlockPose, standing
 from smash.execution.scene.block_size import BlockSize, levels
 from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.noise import Chance, Noise
-from smash.execution.scene.piles import misfits
+from smash.execution.scene.piles import misfits, needs_of
 from smash.execution.scene.scene_file import default_scene, read_scene, scene_from_document
 from smash.execution.scene.start import starting_carriers, starting_poses
 from smash.execution.scene.tabletop import Slot
 from smash.execution.scene.tray import Tray
 from smash.execution.sight import Sight
-from smash.execution.trials.outcome_model import require_cubes
+from smash.execution.trials.outcome_model import _random_actions, _random_problem, require_modelled
 from smash.execution.trials.topple_map import pile_of
 from smash.motion.move import Move
 from smash.problem import (
@@ -234,7 +234,24 @@ def test_sizes_are_part_of_the_fingerprint_and_a_scene_without_them_keeps_its_ow
 
 def test_no_outcome_model_is_made_of_a_scene_of_boxes():
     with pytest.raises(SmashError, match="scene 'boxes' has boxes"):
-        require_cubes(SCENE)
+        require_modelled(SCENE)
+
+
+def test_no_outcome_model_is_made_where_the_robot_reaches_low_piles_alone(monkeypatch):
+    monkeypatch.setattr(type(default_scene()), "highest", 3)
+    with pytest.raises(SmashError, match="reaches no more than 3"):
+        require_modelled(default_scene())
+
+
+def test_what_is_rehearsed_for_a_model_topples_no_stack_without_a_strip():
+    bare = [dataclasses.replace(slot, directions=()) for slot in default_scene().stacks[1:]]
+    scene = dataclasses.replace(default_scene(), stacks=(default_scene().stacks[0], *bare))
+    toppled = set()
+    for seed in range(40):
+        generator = np.random.default_rng(seed)
+        problem = _random_problem(scene, generator)
+        toppled |= {done.location for done in _random_actions(problem, scene, generator) if isinstance(done, Topple)}
+    assert toppled == {"s1"}
 
 
 def test_piles_of_a_map_are_drawn_from_the_boxes_of_the_scene():
@@ -245,9 +262,9 @@ def test_piles_of_a_map_are_drawn_from_the_boxes_of_the_scene():
 
 def test_a_pile_is_limited_by_its_height_as_the_boxes_may_lie():
     scene = dataclasses.replace(default_scene(), sizes={name: BlockSize(0.05, 0.07, 0.1) for name in "abcdefgh"})
-    (problem,) = misfits(scene, Law(piles_of(s1="abcdefgh")), ())
+    (problem,) = misfits(scene, piles_of(s1="abcdefgh"), needs_of(Law(piles_of(s1="abcdefgh")), ()))
     assert problem.startswith("the plan piles 8 blocks on 's1'; scene 'default' has room for 7 there")
-    assert list(misfits(scene, Law(piles_of(s1="abcdefg")), ())) == []
+    assert list(misfits(scene, piles_of(s1="abcdefg"), needs_of(Law(piles_of(s1="abcdefg")), ()))) == []
 
 
 def test_the_conditions_hold_for_the_scene_of_boxes_and_not_for_wider_ones():

@@ -17,11 +17,12 @@ from smash.execution.executor import Executor
 from smash.execution.layout.bounds import impossible
 from smash.execution.layout.candidates import SPACINGS, candidates
 from smash.execution.layout.conditions import violations
+from smash.execution.layout.judging import problems_of_plan
 from smash.execution.layout.laying import NoLayout, NotFound, lay_out
 from smash.execution.layout.rectangles import Rectangles
-from smash.execution.layout.wanted import Place, places_of_instance, places_of_plan
+from smash.execution.layout.wanted import Place, in_cubes, places_of_instance, places_of_plan
 from smash.execution.policy import OPEN
-from smash.execution.scene.piles import highest_piles, largest_topples, misfits, piles_of_ends
+from smash.execution.scene.piles import misfits, needs_of, piles_of_ends
 from smash.execution.scene.scene_file import (
     DEFAULT_SCENE,
     default_scene,
@@ -197,8 +198,8 @@ OPTIONS = (PlanOptions(), PlanOptions(max_topple=2), PlanOptions(topple=False))
 
 def test_piles_are_counted_as_the_law_carries_a_plan_out():
     law, actions = Law(buried_target()), buried_plan().actions
-    assert highest_piles(law, actions) == {"s1": 4, "g": 1}
-    assert largest_topples(law, actions) == {"s1": 3}
+    assert needs_of(law, actions).highest == {"s1": 4, "g": 1}
+    assert needs_of(law, actions).topples == {"s1": 3}
     assert piles_of_ends(law.instance)["g"] == 1
 
 
@@ -225,8 +226,8 @@ def test_more_blocks_than_the_arm_can_pile_up_are_no_hindrance_where_no_pile_is_
     assert set(default_scene().bind(instance)) == {"s1", "s2"}
     law = Law(instance)
     higher = [action for n in range(3) for action in (Pick(f"b{19 - n}", "s2"), Put(f"b{19 - n}", "s1"))]
-    assert list(misfits(default_scene(), law, higher[:4])) == []
-    (problem,) = misfits(default_scene(), law, higher)
+    assert list(misfits(default_scene(), instance, needs_of(law, higher[:4]))) == []
+    (problem,) = misfits(default_scene(), instance, needs_of(law, higher))
     assert "13 blocks on 's1'" in problem
     assert "room for 12" in problem
 
@@ -312,6 +313,39 @@ def test_a_scene_that_is_written_is_read_again(slot, name):
         *(slot.radius, slot.directions, slot.highest, slot.falling),
     )
     assert again.angle == pytest.approx(slot.angle, abs=1e-6)
+
+
+def test_a_strip_is_as_long_as_the_highest_boxes_of_the_scene_ask_for():
+    tall = dataclasses.replace(default_scene(), height=0.07)
+    place = in_cubes(Place("s1", 4, 3), tall)
+    assert (place.strip, place.judged) == (strip(5), strip(5))
+    assert in_cubes(Place("s1", 4, 3), default_scene()) == Place("s1", 4, 3)
+    pool = candidates(place, tall.longest, ROBOT)
+    assert pool.strips is None or pool.strips.half[1] == strip(5).half_width
+    assert len(pool.slots) < len(candidates(Place("s1", 4, 3), tall.longest, ROBOT).slots)
+
+
+@pytest.mark.slow
+def test_a_layout_of_boxes_keeps_both_conditions_as_the_boxes_are():
+    tall = dataclasses.replace(default_scene(), height=0.06)
+    found = lay_out(Law(buried_target()), tall, buried_plan().actions)
+    assert violations(found.tabletop) == []
+
+
+def test_what_is_null_in_a_scene_of_json_is_left_out_of_its_toml():
+    document = {**DOCUMENT, "robot": None, "block": {"side": 0.04, "height": None}, "blocks": {"a": {"mass": None}}}
+    text = scene_toml(with_slots(document, "x", default_scene().stacks, []))
+    assert scene_from_document(tomllib.loads(text)) == dataclasses.replace(
+        scene_from_document(document), name="x", buffers=()
+    )
+
+
+def test_a_layout_in_which_blocks_that_lie_on_the_table_have_no_room_is_judged_bad():
+    instance = make_instance(
+        name="lying", blocks=list("ab"), stacks=["s1"], start={"s1": ["a"]}, table=["b"], goal=PositionsGoal({})
+    )
+    (problem,) = problems_of_plan(with_stacks(Slot(0.45, 0.0)), Law(instance), ())
+    assert problem.startswith("the table region of scene")
 
 
 def layout(folder, *arguments):

@@ -1,6 +1,7 @@
 """Another arm at the same table: worlds, refusals before anything moves, what is written of it."""
 
 import dataclasses
+from itertools import product
 
 import numpy as np
 import pytest
@@ -12,7 +13,8 @@ from smash.execution.executor import Executor
 from smash.execution.physics.engines import engine_of, world_of
 from smash.execution.policy import OPEN
 from smash.execution.scene.block_pose import standing
-from smash.execution.scene.piles import highest_piles
+from smash.execution.scene.block_size import FOOTPRINTS, HEIGHTS, BlockSize, unfit
+from smash.execution.scene.piles import needs_of
 from smash.execution.scene.scene_file import default_scene, read_scene, scene_of
 from smash.execution.scene.tabletop import DoesNotFit, Slot
 from smash.execution.viewing.recording import Recording
@@ -111,6 +113,9 @@ def test_a_scene_names_its_robot_beside_it(path, tmp_path):
     scene.write_text(scene.read_text().replace("six.toml", "seven.toml"))
     with pytest.raises(MalformedFile, match=r"seven\.toml: cannot be read"):
         read_scene(scene)
+    scene.write_text(scene.read_text().replace("seven.toml", "seven"))
+    with pytest.raises(MalformedFile, match=r"scene\.toml: robot: there is none called 'seven'"):
+        read_scene(scene)
 
 
 STACKS = '[[stacks]]\nradius = 0.45\nangle = 0\ntopple = ["clockwise"]\n'
@@ -125,11 +130,39 @@ def test_the_panda_by_name_is_the_scene_as_it_was():
 def test_piles_out_of_the_arm_s_reach_are_named_before_anything_moves(path):
     instance, plan = swapped_pair(), swapped_plan()
     law, robot, scene = Law(instance), load_robot(path), default_scene()
-    assert highest_piles(law, plan.actions) == {"s2": 2}
-    require_able(robot, scene, law, plan.actions, {"s2": Slot(0.45, 0.0, ("clockwise",))})
+    needs = needs_of(law, plan.actions)
+    assert needs.highest == {"s2": 2}
+    require_able(robot, scene, plan.actions, needs, {"s2": Slot(0.45, 0.0, ("clockwise",))})
     words = r"robot 'six' does not reach 2 blocks at 's2' of scene 'default', 0.90 m from its base; "
     with pytest.raises(DoesNotFit, match=words + "it reaches 12 from 0.20 to 0.50 m, 6 from 0.70 to 0.70 m"):
-        require_able(robot, scene, law, plan.actions, {"s2": Slot(0.90, 0.0, ("clockwise",))})
+        require_able(robot, scene, plan.actions, needs, {"s2": Slot(0.90, 0.0, ("clockwise",))})
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [
+        ("opening = 0.04", "opening = 0.02", "it is 0.045 m wide, and 0.03 m fit between the open fingers"),
+        ("[0.0317, 0.1005, 0.0661]", "[0.0317, 0.1005, 0.0850]", "it is 0.045 m high, and the palm is 0.02 m above"),
+        ("tip = 0.0072", "tip = 0.03", "it is 0.045 m high, and the fingertips are 0.03 m below"),
+    ],
+)
+def test_a_hand_that_cannot_hold_the_blocks_of_a_scene_is_refused(tmp_path, before, after, words):
+    path = written(tmp_path, hand=[(before, after)])
+    with pytest.raises(DoesNotFit, match="hand 'panda_hand' does not hold a block of scene 'default'") as refusal:
+        scene_of(None, robot=path)
+    assert words in str(refusal.value)
+
+
+def test_a_named_block_that_a_hand_cannot_hold_is_named(tmp_path):
+    path = written(tmp_path, hand=[("opening = 0.04", "opening = 0.02")])
+    scene = dataclasses.replace(default_scene(), side=0.03, sizes={"b": default_scene().block})
+    with pytest.raises(DoesNotFit, match="does not hold block 'b' of scene 'default'"):
+        scene.with_robot(str(path))
+
+
+def test_the_panda_s_hand_holds_whatever_a_scene_may_have():
+    for footprint, height in product(FOOTPRINTS, HEIGHTS):
+        assert unfit(BlockSize(footprint, height, 0.1), load_robot().hand) is None
 
 
 def test_an_arm_that_cannot_turn_about_the_vertical_carries_nothing(tmp_path):
@@ -147,6 +180,8 @@ def test_files_of_an_episode_are_of_its_robot(path, tmp_path):
         "/six_arm_controller/joint_trajectory",
         "/panda_hand_controller/joint_trajectory",
     )
+    hyphened = dataclasses.replace(robot, name="my-arm")
+    assert arm_topic(hyphened) == "/my_arm_arm_controller/joint_trajectory"
     samples = [(step / 480, robot.ready, 0.04) for step in range(1, 20)]
     write_trajectory(tmp_path / "t.csv", robot.joints, thinned(samples))
     assert (tmp_path / "t.csv").read_text().startswith("time,pan,lift,elbow,wrist1,wrist2,wrist3,finger_opening\n")

@@ -45,6 +45,7 @@ def test_a_scene_with_a_base_differs_from_it_in_what_it_says():
         (["stacks", 0, "topple"], ["up"], "topple"),
         (["stacks", 0, "topple"], ["clockwise", "clockwise"], "each once"),
         (["stacks", 0, "highest"], 0, "highest"),
+        (["stacks", 0, "highest"], 10_000_000, "highest"),
         (["buffers", 0, "falling"], 2, "falling"),
         (["stacks", 1, "angle"], -160, "stands"),
         (["stacks", 1, "radius"], "far", "radius"),

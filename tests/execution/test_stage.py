@@ -7,9 +7,11 @@ from operator import itemgetter
 import numpy as np
 import pytest
 
+from smash.execution.physics.window import furnish
+from smash.execution.scene.marks import slot_marks
 from smash.execution.scene.scene_file import default_scene
 from smash.execution.viewing import painters
-from smash.execution.viewing.stage import block_colours, slot_looks
+from smash.execution.viewing.stage import block_colours
 from smash.problem.errors import Unsupported
 from tests.execution.made_up import recording_of
 
@@ -77,7 +79,28 @@ def test_without_opengl_pictures_are_refused_in_one_line_before_the_episode(monk
     assert "\n" not in str(refusal.value)
 
 
+class Drawn:
+    """PyBullet's window, as far as marks on the table are asked of it."""
+
+    GEOM_BOX, COV_ENABLE_GUI = 3, 1
+
+    def __init__(self):
+        self.colours = []
+
+    def createVisualShape(self, kind, *, halfExtents, rgbaColor):  # noqa: N802, N803
+        self.colours.append(tuple(rgbaColor[:3]))
+
+    def __getattr__(self, name):
+        return lambda *arguments: None
+
+
+def test_the_window_marks_slots_as_pictures_do():
+    window = Drawn()
+    furnish(window, default_scene())
+    assert window.colours == [colour for _, _, colour in slot_marks(default_scene())]
+
+
 def test_a_stack_that_nothing_topples_looks_like_a_stack():
     scene = default_scene()
     still = replace(scene, stacks=tuple(replace(slot, directions=()) for slot in scene.stacks))
-    assert list(map(itemgetter(2), slot_looks(still))) == list(map(itemgetter(2), slot_looks(scene)))
+    assert list(map(itemgetter(2), slot_marks(still))) == list(map(itemgetter(2), slot_marks(scene)))

@@ -1,3 +1,4 @@
+import dataclasses
 import signal
 import subprocess
 import sys
@@ -8,9 +9,11 @@ from click.testing import CliRunner
 
 from smash.cli import smash
 from smash.execution.scene.scene_file import default_scene
+from smash.execution.scene.tabletop import Slot
 from smash.execution.trials.estimates import Rate, read_estimates, write_estimates
 from smash.execution.trials.topple_map import draw, estimates, run_trial
-from smash.problem.errors import MalformedFile
+from smash.experiments.episodes.topple_trials import wanted_trials
+from smash.problem.errors import MalformedFile, SmashError
 from smash.records.trials import Landing, Trial
 
 
@@ -24,6 +27,21 @@ def test_a_small_topple_succeeds_and_lands_along_the_push():
     assert done.success
     assert done.moved < 0.01
     assert all(landing.along > 0.05 and abs(landing.aside) < 0.05 for landing in done.landings)
+
+
+def test_piles_are_toppled_where_a_strip_is_and_no_higher_than_their_slot_is_made_for():
+    low, bare, high = Slot(0.45, 0.0, ("clockwise",), 2), Slot(0.45, 1.0), Slot(0.45, 2.0, ("clockwise",))
+    scene = dataclasses.replace(default_scene(), stacks=(low, bare, high))
+    wanted = wanted_trials(scene, "mujoco", 4, 9, range(2))
+    assert {run.key[1] for run in wanted} == {0, 2}
+    assert {run.key[2:4] for run in wanted if run.key[1] == 0} == {(1, 1), (1, 2), (2, 1)}
+    assert len([run for run in wanted if run.key[1] == 2]) == 9 + 8 + 7 + 6
+
+
+def test_a_scene_in_which_no_pile_that_is_toppled_fits_has_no_map():
+    scene = dataclasses.replace(default_scene(), stacks=(Slot(0.90, 0.0, ("clockwise",)),))
+    with pytest.raises(SmashError, match="no room for a pile"):
+        wanted_trials(scene, "mujoco", 4, 9, range(2))
 
 
 def test_estimates_count_by_cut_and_size():

@@ -35,3 +35,9 @@ def test_the_table_region_is_where_the_filled_stacks_fall():
     found = places(Slot(0.4, 0.5, ("outward",)), Slot(0.4, -0.5, ("outward",)))
     assert found["table"][0] == pytest.approx(found["s0"][0], abs=1e-3)
     assert found["table"][1] > 0.4
+
+
+def test_where_no_filled_stack_is_toppled_the_region_is_where_the_others_fall():
+    found = places(Slot(0.4, 0.5), Slot(0.4, -0.5, ("outward",)))
+    assert found["table"][0] == pytest.approx(found["s1"][0], abs=1e-3)
+    assert "table" not in places(Slot(0.4, 0.5), Slot(0.4, -0.5))

@@ -13,6 +13,7 @@ import psutil
 import pytest
 
 from smash.experiments.episodes.series import episode_runs, run_episode, target_depth
+from smash.experiments.episodes.simulating import carry_out
 from smash.experiments.episodes.simulation import Simulation
 from smash.experiments.isolation.hearing import done
 from smash.problem import PositionsGoal, make_instance
@@ -43,6 +44,13 @@ def results(tmp_path_factory):
     )
     assert smash("sweep", folder / "small.toml", "--out", folder / "out").returncode == 0
     return folder / "out"
+
+
+@pytest.mark.skipif(not is_there("mujoco"), reason="mujoco is not installed")
+def test_no_episode_is_carried_out_by_another_robot_than_was_asked_for(results):
+    (run,) = episode_runs(results, [0], ["open"], engine="mujoco", called="panda-01234567")
+    with pytest.raises(SmashError, match=r"'panda-01234567' was asked for, and .*panda\.toml holds 'panda' now"):
+        carry_out(run)
 
 
 @simulated

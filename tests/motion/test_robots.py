@@ -54,6 +54,12 @@ def test_the_corners_of_a_hand_are_those_of_its_meshes_where_its_file_has_none(t
     assert hand.finger == pytest.approx(PANDA.hand.finger, abs=1e-3)
 
 
+def test_a_hand_is_as_thick_as_on_the_side_where_it_stands_out_most(tmp_path):
+    path = written(tmp_path, hand=[("palm = [[-0.0317", "palm = [[-0.0500"), ("[0.0106, 0.0265", "[0.0206, 0.0265")])
+    assert (PANDA.hand.palm_thickness, PANDA.hand.finger_thickness) == (0.0317, 0.0106)
+    assert (load_robot(path).hand.palm_thickness, load_robot(path).hand.finger_thickness) == (0.05, 0.0206)
+
+
 def test_an_arm_of_six_joints_with_any_axes_has_one_kinematics(six):
     assert six.count == 6
     assert six.upright
@@ -218,6 +224,16 @@ REFUSED = (
         r"`fingers`: what moves in the URDF is panda_",
     ),
     (None, None, None, ("speed = 0.2", "grip = 1"), r"grip|speed"),
+    (None, None, None, ("speed = 0.2", "speed = inf"), r"`speed`: finite numbers"),
+    (None, None, None, ("palm = [[-0.0317", "palm = [[-inf"), r"`boxes.palm`: finite numbers"),
+    ('name = "six"', 'name = "six\\n"', None, None, r"`name`"),
+    ("[reach]", "[mount]\nrpy = [nan, 0, 0]\n[reach]", None, None, r"`mount.rpy`: finite numbers"),
+    ("[0.70, 6]", "[inf, 6]", None, None, r"`reach.heights`: finite numbers"),
+    ("[0.70, 6]", "[0.70, 1000]", None, None, r"<= 100 - at `reach.heights"),
+    ('spheres = "six.csv"', 'spheres = "six.toml"', None, None, r"`arm.spheres`: .* ends in \.csv"),
+    ('base = "ground"', 'base = "flange"', None, None, r"the URDF has none"),
+    (None, None, ('size="0.08 0.08 0.42"', 'size="inf 0.08 0.42"'), None, r"component \[inf\]"),
+    (None, None, ('ixx="0.1"', 'ixx="thick"'), None, r"inertia element ixx is not a valid double"),
 )
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from smash.execution.scene.area import Area
 from smash.execution.scene.block_pose import BlockPose
-from smash.execution.scene.block_size import BlockSize, levels
+from smash.execution.scene.block_size import BESIDE, BlockSize, levels
 from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.scene.tray import Tray
@@ -29,7 +29,7 @@ from smash.motion.robots import load_robot
 from smash.motion.timing import Pace, time_path
 from smash.problem.errors import ExecutionFailure
 
-OPENINGS = (0.010, 0.005)
+OPENINGS = (0.010, BESIDE)
 """Room between a finger and the block before it is grasped [m], the wide one first."""
 RELEASE_HEIGHT = 0.001
 """What the hand holds is let go this far above what carries it [m]."""

@@ -386,5 +386,4 @@ def _first_contact(hand: Hand, fall: Fall) -> float:
     A single block passes below the palm and is met by the fingers; the palm is thicker and meets taller segments first.
     """
     palm_above_cut = fall.above_cut + hand.tip + hand.palm_depth
-    thickness = hand.palm[1, 0] if fall.height > palm_above_cut else hand.finger[1, 0]
-    return fall.widest / 2 + float(thickness)
+    return fall.widest / 2 + (hand.palm_thickness if fall.height > palm_above_cut else hand.finger_thickness)

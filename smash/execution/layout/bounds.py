@@ -10,8 +10,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import pi
 
-from smash.execution.actions.topple import strip
-from smash.execution.layout.conditions import FALLING
 from smash.execution.layout.wanted import Place
 from smash.execution.scene.scene_file import LEAST_APART
 from smash.motion.robot import Robot
@@ -30,6 +28,8 @@ def impossible(places: Sequence[Place], side: float, robot: Robot) -> str | None
         if place.height > most:
             piled = f"location {place.location!r} has to take {place.height} blocks"
             return f"{piled}, and the arm reaches no higher than {most} anywhere"
+    if not most:
+        return "the arm reaches no block anywhere"
     nearest, farthest = robot.reach(side)
     return _too_many(places, side, nearest, farthest) or _too_wide(places, side, farthest)
 
@@ -46,7 +46,7 @@ def _too_many(places: Sequence[Place], side: float, nearest: float, farthest: fl
 
 def _too_wide(places: Sequence[Place], side: float, farthest: float) -> str | None:
     """Strips overlap neither each other nor the blocks that stand on slots."""
-    strips = [_judged(place.falling, side) for place in places if place.falling]
+    strips = [_judged(place, side) for place in places if place.falling]
     if not strips:
         return None
     taken = len(places) * pi * side**2 / 4 + sum(length * width for length, width in strips)
@@ -59,6 +59,6 @@ def _too_wide(places: Sequence[Place], side: float, farthest: float) -> str | No
     )
 
 
-def _judged(falling: int, side: float) -> tuple[float, float]:
+def _judged(place: Place, side: float) -> tuple[float, float]:
     """Length, beyond the block that stands on the slot, and width of a strip as far as the arm has to reach it [m]."""
-    return strip(min(falling, FALLING)).length - side / 2, 2 * strip(min(falling, FALLING)).half_width
+    return place.judged.length - side / 2, 2 * place.judged.half_width

@@ -9,8 +9,8 @@ from math import atan2, hypot, radians
 import numpy as np
 from numpy.typing import NDArray
 
-from smash.execution.actions.topple import RUN_UP, SWEEP, strip
-from smash.execution.layout.conditions import FALLING, STRIP_SAMPLES
+from smash.execution.actions.topple import RUN_UP, SWEEP
+from smash.execution.layout.conditions import STRIP_SAMPLES
 from smash.execution.layout.rectangles import Floats, Mask, Rectangles
 from smash.execution.layout.wanted import Place
 from smash.execution.scene.tabletop import DIRECTIONS, Slot
@@ -118,7 +118,7 @@ def _slots(place: Place, side: float, robot: Robot) -> Iterator[Slot]:
         if robot.highest(radius) < place.height * side - 1e-9:
             continue
         ahead = {way: Slot(radius, 0.0, (way,), falling=place.falling) for way in DIRECTIONS}
-        reached = {way: _bearings(slot, side, near, far) for way, slot in ahead.items()}
+        reached = {way: _bearings(place, slot, side, near, far) for way, slot in ahead.items()}
         for angle in map(radians, ANGLES):
             if not place.falling:
                 yield Slot(radius, angle, highest=place.height)
@@ -128,18 +128,17 @@ def _slots(place: Place, side: float, robot: Robot) -> Iterator[Slot]:
                     yield Slot(radius, angle, (direction,), place.height, place.falling)
 
 
-def _bearings(slot: Slot, side: float, near: float, far: float) -> tuple[float, float] | None:
+def _bearings(place: Place, slot: Slot, side: float, near: float, far: float) -> tuple[float, float] | None:
     """Least and greatest bearing in the strip of a slot straight ahead [rad], as far as strips are judged.
 
     None where there is no strip, or where not all of it is between two distances from the base [m].
     """
-    if not slot.falling:
+    if not place.falling:
         return None
-    room, judged = strip(slot.falling), strip(min(slot.falling, FALLING))
-    aside = room.half_width - side / 2
+    aside = place.strip.half_width - side / 2
     places = [
         slot.point(float(along), sign * aside, slot.directions[0])
-        for along in np.linspace(side, judged.length, STRIP_SAMPLES)
+        for along in np.linspace(side, place.judged.length, STRIP_SAMPLES)
         for sign in (-1.0, 0.0, 1.0)
     ]
     if not all(near <= hypot(x, y) <= far for x, y in places):
@@ -154,8 +153,8 @@ def _of(slots: list[Slot], place: Place, side: float, robot: Robot) -> Candidate
         return Candidates(tuple(slots), middles, None, None)
     heading = np.array([slot.heading(slot.directions[0]) for slot in slots])
     axes = np.stack([np.cos(heading), np.sin(heading)], axis=1).reshape(-1, 2)
-    room, palm = strip(place.falling), np.abs(robot.hand.palm).max(axis=0)
-    begin = -(RUN_UP + side / 2 + 2 * palm[0])
+    room, palm = place.strip, np.abs(robot.hand.palm).max(axis=0)
+    begin = -(RUN_UP + side / 2 + 2 * robot.hand.palm_thickness)
     end = (SWEEP.follow_through - 0.5) * side
     strips = _along(middles, axes, side / 2, room.length, room.half_width)
     return Candidates(tuple(slots), middles, strips, _along(middles, axes, begin, end, palm[1]))

@@ -13,7 +13,7 @@ from smash.execution.layout.conditions import full_piles, violations
 from smash.execution.scene.block_pose import BlockPose, standing
 from smash.execution.scene.geometry import Geometry
 from smash.execution.scene.start import starting_poses
-from smash.execution.scene.tabletop import Tabletop
+from smash.execution.scene.tabletop import DoesNotFit, Tabletop
 from smash.problem.errors import ExecutionFailure
 from smash.problem.model import Action
 from smash.problem.rules import Law
@@ -37,9 +37,16 @@ def problems_of(tabletop: Tabletop) -> Iterator[str]:
 
 
 def problems_of_plan(tabletop: Tabletop, law: Law, actions: Sequence[Action]) -> Iterator[str]:
-    """Yield the actions of a legal plan for which no motion is found before the episode, as the executor plans it."""
+    """Yield the actions of a legal plan for which no motion is found before the episode, as the executor plans it.
+
+    Before them, that the blocks which start in the table region have no room there.
+    """
     slots = tabletop.bind(law.instance)
-    poses = starting_poses(law.instance, slots, tabletop, np.random.default_rng(0))
+    try:
+        poses = starting_poses(law.instance, slots, tabletop, np.random.default_rng(0))
+    except DoesNotFit as problem:
+        yield str(problem)
+        return
     arm = ArmMotions(tabletop)
     tasks = Grounder(arm).ground(actions, law, Geometry(slots, blocks=poses), arm.robot.ready)
     for step, task in enumerate(tasks, start=1):

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from smash.execution.layout.bounds import impossible
+from smash.execution.layout.conditions import violations
 from smash.execution.layout.judging import problems_of, problems_of_plan
 from smash.execution.layout.search import find_layout
-from smash.execution.layout.wanted import Place, places_of_instance, places_of_plan
+from smash.execution.layout.wanted import Place, in_cubes, places_of_instance, places_of_plan
 from smash.execution.scene.tabletop import Slot, Tabletop
 from smash.motion.robots import load_robot
 from smash.problem.errors import SmashError, Unsupported
@@ -91,6 +92,7 @@ def lay_out(
         places = places_of_plan(law, actions, tabletop.highest)
     if instance.table and not any(place.falling for place in places):
         places[0] = replace(places[0], falling=1)
+    places = [in_cubes(place, tabletop) for place in places]
     reason = impossible(places, tabletop.longest, robot)
     if reason is not None:
         if actions is None and height is None:
@@ -102,12 +104,18 @@ def lay_out(
         return replace(tabletop, stacks=tuple(slots[:count]), buffers=tuple(slots[count:]), tray=None, stations=())
 
     def judge(slots: Sequence[Slot]) -> str | None:
-        made = scene(slots)
-        return next(problems_of(replace(made, side=made.longest, height=None, sizes={})), None) or (
-            None if actions is None else next(problems_of_plan(made, law, actions), None)
-        )
+        return next(_problems(scene(slots), law, actions), None)
 
     found = find_layout(places, tabletop.longest, robot, judge, attempts=attempts, seed=seed)
     if found.slots is None:
         raise NotFound(f"no layout for {instance.name!r} was found in {attempts} attempts; the nearest: {found.reason}")
     return Layout(scene(found.slots), tuple(places), found.attempts)
+
+
+def _problems(tabletop: Tabletop, law: Law, actions: Sequence[Action] | None) -> Iterator[str]:
+    """Yield what any of the judges finds wrong; of boxes by the longest edge, and as they are."""
+    yield from problems_of(replace(tabletop, side=tabletop.longest, height=None, sizes={}))
+    if not tabletop.uniform:
+        yield from map(str, violations(tabletop))
+    if actions is not None:
+        yield from problems_of_plan(tabletop, law, actions)

@@ -60,7 +60,8 @@ def find_layout(
         attempts: How many there are at most.
         seed: Of the attempts.
     """
-    pools = {kind: candidates(Place("", *kind), side, robot) for kind in {(p.height, p.falling) for p in places}}
+    kinds = {(place.height, place.falling): place for place in places}
+    pools = {kind: candidates(place, side, robot) for kind, place in kinds.items()}
     room, nearest, reason = HandRoom(side, robot), -1, ""
     for number in range(attempts):
         spacing = SPACINGS[len(SPACINGS) * number // attempts]

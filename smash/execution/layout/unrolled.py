@@ -28,9 +28,9 @@ def unrolled_positions(tabletop: Tabletop, instance: Instance) -> dict[str, tupl
     slots = tabletop.bind(instance)
     points = {name: (slot.x, slot.y) for name, slot in (slots | tabletop.bind_stations(instance)).items()}
     places = {name: _unrolled(*point) for name, point in points.items()}
-    filled = [name for name in instance.stacks if instance.start[name]] or list(instance.stacks)
+    toppled = [name for name in instance.stacks if slots[name].directions]
+    filled = [name for name in toppled if instance.start[name]] or toppled
     middle = strip(TOPPLED).length / 2
-    filled = [name for name in filled if slots[name].directions]
     fallen = [_unrolled(*slots[name].point(middle, 0.0, slots[name].directions[0])) for name in filled]
     if fallen:
         places[TABLE] = (sum(x for x, _ in fallen) / len(fallen), sum(y for _, y in fallen) / len(fallen))

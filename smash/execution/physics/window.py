@@ -9,11 +9,9 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
+from smash.execution.scene.marks import slot_marks
 from smash.execution.scene.tabletop import Tabletop
 from smash.problem.errors import Unsupported
-
-PAD_HEIGHT = 0.0004
-"""Half of the thickness of the marks on the table [m]."""
 
 
 def require_display() -> None:
@@ -41,12 +39,10 @@ def furnish(client: Any, tabletop: Tabletop) -> None:
     """Look at the table from near by, and mark the slots on it."""
     client.configureDebugVisualizer(client.COV_ENABLE_GUI, 0)
     client.resetDebugVisualizerCamera(1.5, 30, -38, [0.0, 0.0, 0.15])
-    half = [0.6 * tabletop.widest] * 2 + [PAD_HEIGHT]
-    for slots, colour in ((tabletop.stacks, [0.55, 0.66, 0.80, 1]), (tabletop.buffers, [0.74, 0.74, 0.72, 1])):
-        shape = client.createVisualShape(client.GEOM_BOX, halfExtents=half, rgbaColor=colour)
-        for slot in slots:
-            turn = client.getQuaternionFromEuler([0, 0, slot.angle])
-            client.createMultiBody(0, -1, shape, [slot.x, slot.y, PAD_HEIGHT], turn)
+    for slot, half, colour in slot_marks(tabletop):
+        shape = client.createVisualShape(client.GEOM_BOX, halfExtents=half, rgbaColor=[*colour, 1])
+        turn = client.getQuaternionFromEuler([0, 0, slot.angle])
+        client.createMultiBody(0, -1, shape, [slot.x, slot.y, half[2]], turn)
 
 
 def words_to_stderr() -> Callable[[], None]:

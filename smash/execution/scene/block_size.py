@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from smash.execution.scene.block_pose import QUARTER, BlockPose
+from smash.motion.robot import Hand
 
 FOOTPRINTS = (0.03, 0.07)
-"""The least and the most of a footprint [m]: the open fingers are 8 cm apart, 5 mm of it room beside each of them."""
+"""The least and the most of a footprint that a scene may have [m]: the most that the Panda's hand holds (`unfit`)."""
 HEIGHTS = (0.025, 0.07)
-"""The least and the most of a height [m]: a block is held by its middle, the fingertips 7 mm below it, the palm 39 mm
-above."""
+"""The same of a height [m]: a block is held by its middle, the fingertips 7 mm below it, the palm 39 mm above."""
+BESIDE = 0.005
+"""The least room between an open finger and the block that it comes down beside [m]."""
 
 Extents = tuple[float, float, float]
 """Of a block that lies or is held level [m]: along one horizontal direction, across it, and upright."""
@@ -71,6 +73,18 @@ class BlockSize:
         if round((heading - pose.yaw) / QUARTER) % 2:
             first, second = second, first
         return edges[first], edges[second], edges[axis]
+
+
+def unfit(size: BlockSize, hand: Hand) -> str | None:
+    """Return why a hand cannot hold a block from above, on whichever face it lies; None where it can."""
+    wide, high = 2 * (hand.opening - BESIDE), 2 * hand.palm_depth
+    if size.footprint > wide + 1e-9:
+        return f"it is {size.footprint:g} m wide, and {max(wide, 0.0):.3g} m fit between the open fingers"
+    if size.longest >= high:
+        return f"it is {size.longest:g} m high, and the palm is {max(high / 2, 0.0):.3g} m above its middle"
+    if min(size.edges) / 2 <= hand.tip:
+        return f"it is {min(size.edges):g} m high, and the fingertips are {hand.tip:g} m below its middle"
+    return None
 
 
 def levels(heights: Iterable[float], unit: float) -> float:

@@ -27,11 +27,14 @@ DEFAULT_SCENE = Path(__file__).parent / "default.toml"
 LEAST_APART = 1.5
 """Middles of two slots are so many sides apart, or the file is refused."""
 
+MOST_BLOCKS = 100
+"""The most blocks of a pile, or of a topple, that a slot is made for: more than any arm reaches."""
+
 HEAVIEST = 1.0
 """The most that a block weighs [kg]."""
 
 _Share = Annotated[float, msgspec.Meta(ge=SLOWEST, le=1.0)]
-_Count = Annotated[int, msgspec.Meta(ge=1)]
+_Count = Annotated[int, msgspec.Meta(ge=1, le=MOST_BLOCKS)]
 _Coefficient = Annotated[float, msgspec.Meta(gt=0.0, le=2.0)]
 
 
@@ -116,8 +119,17 @@ def read_scene(path: str | os.PathLike[str]) -> Tabletop:
     Raises:
         MalformedFile: with one line that says where and what is allowed.
     """
-    where = os.fspath(path)
-    return scene_from_document(_parse(read_bytes(path), where), where)
+    return scene_from_document(scene_document(path), os.fspath(path))
+
+
+def scene_document(path: str | os.PathLike[str]) -> Any:
+    """Return what stands in a scene file, as `scene_from_document` checks it.
+
+    Raises:
+        MalformedFile: where it cannot be read, or is neither TOML nor JSON, as its name says.
+    """
+    where, content = os.fspath(path), read_bytes(path)
+    return parse_toml(content, where) if where.endswith(".toml") else parse_json(content, where)
 
 
 @cache
@@ -136,7 +148,7 @@ def scene_from_document(document: Any, where: str = "scene") -> Tabletop:
     if document.get("base") == "default":
         if "name" not in document:
             raise MalformedFile(where, "missing `name`: a scene with a base has one of its own")
-        document = {**_parse(read_bytes(DEFAULT_SCENE), str(DEFAULT_SCENE)), **document}
+        document = {**scene_document(DEFAULT_SCENE), **document}
     file = cast(_SceneFile, convert(document, _SceneFile, where))
     if not file.stacks:
         raise MalformedFile(where, "`stacks`: at least one is needed")
@@ -163,9 +175,23 @@ def scene_from_document(document: Any, where: str = "scene") -> Tabletop:
         tray, stations = Tray(table.longest, **msgspec.to_builtins(file.tray)), file.stations
         table = replace(table, tray=tray, stations=tuple(Slot(s.radius, radians(s.angle)) for s in stations))
     if file.robot is not None:
-        table = table.with_robot(beside(file.robot, where))
+        table = _with_robot(table, file.robot, where)
     _refuse_overlap(table, where)
     return table
+
+
+def _with_robot(table: Tabletop, robot: str, where: str) -> Tabletop:
+    """The same table with the robot that its file names.
+
+    Raises:
+        MalformedFile: where there is none of that name, its own file is malformed, or it cannot hold the blocks.
+    """
+    try:
+        return table.with_robot(beside(robot, where))
+    except MalformedFile:
+        raise
+    except SmashError as error:
+        raise MalformedFile(where, str(error)) from None
 
 
 def _usual(file: _BlockFile, where: str) -> BlockSize:
@@ -261,22 +287,6 @@ def scene_of(
         named = os.fspath(robot)
         scene = scene.with_robot(os.path.abspath(named) if named.endswith(".toml") else named)
     return scene
-
-
-def scene_document(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """Return the document of a scene file that is well formed.
-
-    Raises:
-        MalformedFile: as `read_scene`.
-    """
-    where = os.fspath(path)
-    document = _parse(read_bytes(path), where)
-    scene_from_document(document, where)
-    return dict(document)
-
-
-def _parse(content: bytes, where: str) -> Any:
-    return parse_toml(content, where) if where.endswith(".toml") else parse_json(content, where)
 
 
 def _refuse_overlap(table: Tabletop, where: str) -> None:

@@ -31,9 +31,12 @@ def with_slots(
 
 
 def scene_toml(document: Mapping[str, Any], comment: str = "") -> str:
-    """Return a scene's document as TOML, which `read_scene` reads; each line of `comment` stands on top."""
+    """Return a scene's document as TOML, which `read_scene` reads; each line of `comment` stands on top.
+
+    What is null in JSON is left out, which means the same.
+    """
     lines = [f"# {line}" for line in comment.splitlines()]
-    lines += [f"{_key(key)} = {_value(value)}" for key, value in document.items() if not _is_table(value)]
+    lines += _lines({key: value for key, value in document.items() if not _is_table(value)})
     for key, value in document.items():
         if isinstance(value, Mapping):
             lines += ["", f"[{_key(key)}]", *_lines(value)]
@@ -62,7 +65,7 @@ def _is_table(value: Any) -> bool:
 
 
 def _lines(table: Mapping[str, Any]) -> list[str]:
-    return [f"{_key(key)} = {_value(value)}" for key, value in table.items()]
+    return [f"{_key(key)} = {_value(value)}" for key, value in table.items() if value is not None]
 
 
 def _key(key: str) -> str:

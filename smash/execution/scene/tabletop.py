@@ -12,7 +12,7 @@ from hashlib import sha256
 from math import cos, fsum, hypot, pi, sin
 
 from smash.execution.scene.block_pose import QUARTER, BlockPose
-from smash.execution.scene.block_size import BlockSize
+from smash.execution.scene.block_size import BlockSize, unfit
 from smash.execution.scene.tray import Tray
 from smash.motion.robots import DEFAULT_ROBOT, load_robot
 from smash.problem.errors import SmashError
@@ -221,9 +221,14 @@ class Tabletop:
         """The same table with another robot, which has a name or a file.
 
         Raises:
+            DoesNotFit: where its hand cannot hold a block of the scene.
             SmashError: where there is none of that name, or its file is malformed.
         """
-        load_robot(robot)
+        hand = load_robot(robot).hand
+        for block, size in {"": self.block, **self.sizes}.items():
+            if why := unfit(size, hand):
+                named = f"block {block!r}" if block in self.sizes else "a block"
+                raise DoesNotFit(f"hand {hand.name!r} does not hold {named} of scene {self.name!r}: {why}")
         tray = None if self.tray is None else replace(self.tray, robot=robot)
         return replace(self, robot=robot, tray=tray)
 

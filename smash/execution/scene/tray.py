@@ -80,7 +80,7 @@ class Tray:
     @property
     def _column(self) -> float:
         """Distance of a column of cells from the post's middle [m]."""
-        return float(self._hand.palm[1, 0]) + self.post / 2 + BESIDE_POST
+        return self._hand.palm_thickness + self.post / 2 + BESIDE_POST
 
     @property
     def _pitch(self) -> float:

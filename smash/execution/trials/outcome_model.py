@@ -25,6 +25,8 @@ TROUBLE = 20.0
 that were planned anew had on average."""
 ROUNDS = 60
 """Random arrangements that are rehearsed for the times of picks and places."""
+FEWEST = 4
+"""Blocks of the smallest arrangement."""
 MOVES = 10
 """Blocks that are moved in each."""
 TOPPLED_FIRST = 0.7
@@ -49,7 +51,7 @@ def outcome_model(tabletop: Tabletop, trials: Iterable[Trial], *, rounds: int = 
     Raises:
         SmashError: where no trial can be used, they are of several engines, or the blocks of the scene differ.
     """
-    require_cubes(tabletop)
+    require_modelled(tabletop)
     trials = list(trials)
     engines = {trial.engine for trial in trials}
     if len(engines) > 1:
@@ -82,15 +84,18 @@ def outcome_model(tabletop: Tabletop, trials: Iterable[Trial], *, rounds: int = 
     )
 
 
-def require_cubes(tabletop: Tabletop) -> None:
+def require_modelled(tabletop: Tabletop) -> None:
     """Refuse a scene that no outcome model can be made of.
 
     Raises:
-        SmashError: where its blocks are no cubes of one size.
+        SmashError: where its blocks are no cubes of one size, or the robot reaches no pile worth a rehearsal.
     """
     if not tabletop.uniform:
         words = f"an outcome model knows cubes of one size alone, and scene {tabletop.name!r} has boxes"
         raise SmashError(f"{words}: the map is made without it")
+    if tabletop.highest < FEWEST:
+        words = f"an outcome model is made of piles of {FEWEST} blocks or more"
+        raise SmashError(f"{words}, and the robot of scene {tabletop.name!r} reaches no more than {tabletop.highest}")
 
 
 def tried_moves(
@@ -104,7 +109,7 @@ def tried_moves(
     for number in range(rounds):
         generator = np.random.default_rng([seed, number])
         problem = _random_problem(tabletop, generator)
-        actions = list(_random_actions(problem, generator))
+        actions = list(_random_actions(problem, tabletop, generator))
         forecaster = Forecaster(problem, model)
         walk = forecaster.begin()
         for done in rehearsal.of(problem, actions, seed=number):
@@ -120,7 +125,7 @@ def tried_moves(
 
 def _random_problem(tabletop: Tabletop, generator: np.random.Generator) -> Problem:
     """Four to nine blocks in random piles on the scene's stacks."""
-    count = int(generator.integers(4, min(9, tabletop.highest) + 1))
+    count = int(generator.integers(FEWEST, min(9, tabletop.highest) + 1))
     stacks = [f"s{number}" for number in range(1, len(tabletop.stacks) + 1)]
     buffers = [f"u{number}" for number in range(1, len(tabletop.buffers) + 1)]
     start: dict[str, list[str]] = {}
@@ -132,7 +137,7 @@ def _random_problem(tabletop: Tabletop, generator: np.random.Generator) -> Probl
     )
 
 
-def _random_actions(problem: Problem, generator: np.random.Generator) -> Iterator[Action]:
+def _random_actions(problem: Problem, tabletop: Tabletop, generator: np.random.Generator) -> Iterator[Action]:
     """A topple, perhaps; then blocks from anywhere to anywhere, those that lie on the table first."""
     state, law, instance = State.start_of(problem.instance), problem.law, problem.instance
 
@@ -140,9 +145,10 @@ def _random_actions(problem: Problem, generator: np.random.Generator) -> Iterato
         law.carry_out(state, action)
         return action
 
-    piled = [location for location in instance.stacks if state.piles[location]]
+    slots = tabletop.bind(instance)
+    piled = [location for location in instance.stacks if state.piles[location] and slots[location].directions]
     toppled = None
-    if generator.random() < TOPPLED_FIRST:
+    if piled and generator.random() < TOPPLED_FIRST:
         toppled = location = str(generator.choice(piled))
         yield do(Topple(location, int(generator.integers(1, len(state.piles[location]) + 1))))
     for _ in range(MOVES):

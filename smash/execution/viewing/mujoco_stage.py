@@ -12,6 +12,7 @@ import numpy as np
 
 from smash.execution.physics import mujoco_model as models
 from smash.execution.scene.block_pose import BlockPose
+from smash.execution.scene.marks import slot_marks
 from smash.execution.scene.noise import as_told
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.viewing.recording import Recording
@@ -27,7 +28,6 @@ from smash.execution.viewing.stage import (
     Image,
     Stage,
     block_colours,
-    slot_looks,
 )
 from smash.motion.robots import load_robot
 from smash.problem.errors import Unsupported
@@ -98,7 +98,7 @@ class MujocoStage(Stage):
             if shape.name == "table":
                 shape.size, shape.pos, colour = TABLE_HALF, [0.0, 0.0, -TABLE_HALF[2]], TABLE_COLOUR
             shape.rgba = [*colour, 1.0]
-        for slot, half, colour in slot_looks(tabletop):
+        for slot, half, colour in slot_marks(tabletop):
             turn, place = [np.cos(slot.angle / 2), 0.0, 0.0, np.sin(slot.angle / 2)], [slot.x, slot.y, half[2]]
             spec.worldbody.add_geom(
                 type=mujoco.mjtGeom.mjGEOM_BOX,

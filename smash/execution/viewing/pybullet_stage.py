@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from smash.execution.physics.pybullet_world import connect, numbers_of
 from smash.execution.physics.simulated_robot import urdf_file
+from smash.execution.scene.marks import slot_marks
 from smash.execution.scene.tabletop import Tabletop
 from smash.execution.viewing.recording import Recording
 from smash.execution.viewing.stage import (
@@ -24,7 +25,6 @@ from smash.execution.viewing.stage import (
     Image,
     Stage,
     block_colours,
-    slot_looks,
 )
 from smash.motion.robots import load_robot
 
@@ -60,7 +60,7 @@ class PyBulletStage(Stage):
     def _furnish(self, tabletop: Tabletop) -> None:
         c = self._furniture
         _box(c, TABLE_HALF, [0, 0, -TABLE_HALF[2]], TABLE_COLOUR)
-        for slot, half, colour in slot_looks(tabletop):
+        for slot, half, colour in slot_marks(tabletop):
             _box(c, half, [slot.x, slot.y, half[2]], colour, c.getQuaternionFromEuler([0, 0, slot.angle]))
 
     def _tray(self, tabletop: Tabletop) -> int:

@@ -3,10 +3,10 @@
 Foxglove and rosbag2 read it as it is. Time begins at 0 with the episode, in simulated seconds; equal episodes make
 equal files. The topics:
 
-- `/ROBOT_arm_controller/joint_trajectory` (the robot's name): what the arm was sent to, a message an action, at the
-  moment at which it began. Each starts where the one before ended, at rest, and has the stamp 0, which a controller
-  takes for "now".
-- `/HAND_controller/joint_trajectory` (the hand's name): where the fingers were sent to meanwhile.
+- `/ROBOT_arm_controller/joint_trajectory` (the robot's name, `_` for `-`): what the arm was sent to, a message an
+  action, at the moment at which it began. Each starts where the one before ended, at rest, and has the stamp 0, which a
+  controller takes for "now".
+- `/HAND_controller/joint_trajectory` (the hand's name, likewise): where the fingers were sent to meanwhile.
 - `/joint_states`: arm and fingers as measured.
 - `/tf`: blocks and carriers as they were, as frames of their names in the robot's base; the last message is the
   episode's end.
@@ -54,12 +54,17 @@ ACTION = "/action"
 
 def arm_topic(robot: Robot) -> str:
     """Where an arm listens."""
-    return f"/{robot.name}_arm_controller/joint_trajectory"
+    return f"/{_in_ros(robot.name)}_arm_controller/joint_trajectory"
 
 
 def hand_topic(robot: Robot) -> str:
     """Where its hand does."""
-    return f"/{robot.hand.name}_controller/joint_trajectory"
+    return f"/{_in_ros(robot.hand.name)}_controller/joint_trajectory"
+
+
+def _in_ros(name: str) -> str:
+    """A robot's or a hand's name as a part of a topic, in which ROS 2 allows no hyphen."""
+    return name.replace("-", "_")
 
 
 class _Sent(NamedTuple):

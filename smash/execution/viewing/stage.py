@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from types import TracebackType
 from typing import Self
@@ -11,13 +11,12 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from smash.execution.scene.tabletop import Slot, Tabletop
+from smash.execution.scene.marks import Colour
+from smash.execution.scene.tabletop import Tabletop
 from smash.execution.viewing.recording import Recording
 from smash.problem.pictures import PALETTE
 
 TRAY_COLOUR = (0.62, 0.47, 0.30)
-STACK_COLOUR, BUFFER_COLOUR = (0.62, 0.70, 0.82), (0.78, 0.78, 0.76)
-"""Of the marks of slots."""
 TABLE_COLOUR = (0.90, 0.88, 0.84)
 TABLE_HALF = (0.85, 0.85, 0.01)
 """Half of the table that is shown [m]."""
@@ -29,7 +28,6 @@ LIGHT = (0.6, 0.4, 1.4)
 """Where the light comes from."""
 
 Image = NDArray[np.uint8]
-Colour = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,13 +52,6 @@ def block_colours(count: int) -> list[Colour]:
     """Red, green, blue in 0..1 for each block, in order: the colours that it has in every other picture."""
     paints = [PALETTE[number % len(PALETTE)] for number in range(count)]
     return [(int(p[1:3], 16) / 255, int(p[3:5], 16) / 255, int(p[5:7], 16) / 255) for p in paints]
-
-
-def slot_looks(tabletop: Tabletop) -> Iterator[tuple[Slot, list[float], Colour]]:
-    """Yield each slot of a scene with half of the size [m] and the colour of its mark: stacks look unlike buffers."""
-    half = [tabletop.widest * 0.575, tabletop.widest * 0.575, 0.0005]
-    for number, slot in enumerate(tabletop.slots):
-        yield slot, half, STACK_COLOUR if number < len(tabletop.stacks) else BUFFER_COLOUR
 
 
 class Stage(ABC):

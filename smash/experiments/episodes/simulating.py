@@ -13,6 +13,7 @@ from smash.experiments.episodes.executors import executor_of
 from smash.experiments.episodes.question import EpisodeRun, TrialRun
 from smash.experiments.episodes.simulation import Simulation
 from smash.experiments.isolation.voice import Voice, to_its_end
+from smash.problem.errors import SmashError
 from smash.problem.extras import MissingExtra, missing_extra
 from smash.problem.files.instances import instance_from_document
 from smash.problem.files.typed import typed
@@ -62,7 +63,11 @@ def _answer(question: EpisodeRun | TrialRun) -> Any:
 
 
 def carry_out(run: EpisodeRun) -> Episode:
-    """Carry out the plan of a sweep's record."""
+    """Carry out the plan of a sweep's record.
+
+    Raises:
+        SmashError: where the robot's file is another one here than where the episode was asked for.
+    """
     from smash.execution.viewing.capture import Capture
 
     instance = instance_from_document(run.record.instance_document)
@@ -76,6 +81,9 @@ def carry_out(run: EpisodeRun) -> Episode:
         engine=run.engine,
         on_frame=capture.frame,
     )
+    robot = executor.arm.robot
+    if robot.label != run.robot:
+        raise SmashError(f"robot {run.robot!r} was asked for, and {robot.path} holds {robot.label!r} now")
     episode = executor.run()
     capture.finish(executor, episode)
     return episode

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from math import isfinite
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar, cast
@@ -17,11 +18,12 @@ HAND_FORMAT = "smash-hand/1"
 LEVEL = 0.045
 """Height of a level of `[reach]` [m]."""
 
-Name = Annotated[str, msgspec.Meta(pattern="^[A-Za-z][A-Za-z0-9_-]*$")]
+Name = Annotated[str, msgspec.Meta(pattern=r"^[A-Za-z][A-Za-z0-9_-]*\Z")]
 Triple = tuple[float, float, float]
 Corners = tuple[Triple, Triple]
 _Positive = Annotated[float, msgspec.Meta(gt=0.0)]
 _Length = Annotated[float, msgspec.Meta(gt=0.0, le=1.0)]
+_Levels = Annotated[int, msgspec.Meta(ge=0, le=100)]
 
 
 class Elbow(msgspec.Struct, forbid_unknown_fields=True):
@@ -65,7 +67,7 @@ class PlaceFile(msgspec.Struct, forbid_unknown_fields=True):
 class ReachFile(msgspec.Struct, forbid_unknown_fields=True):
     """`[reach]` of a robot file."""
 
-    heights: list[tuple[float, Annotated[int, msgspec.Meta(ge=0)]]]
+    heights: list[tuple[float, _Levels]]
 
 
 class RobotFile(msgspec.Struct, forbid_unknown_fields=True):
@@ -117,13 +119,13 @@ def read_robot_file(path: Path) -> RobotFile:
         wanted = len(arm.joints) + (key == "padding")
         rows = value if key == "postures" else [] if value is None else [value]
         for row in rows:
-            if not all(map(isfinite, row)):
-                raise MalformedFile(where, f"`arm.{key}`: finite numbers are allowed")
             if len(row) != wanted:
                 raise MalformedFile(where, f"`arm.{key}`: {len(row)} numbers; {wanted} are needed, {_WANTED[key]}")
     for key, joint in (("elbow.joint", arm.elbow and arm.elbow.joint), ("swivel", arm.swivel)):
         if joint is not None and joint not in arm.joints:
             raise MalformedFile(where, f"`arm.{key}`: {joint!r} is none of `arm.joints`")
+    if arm.spheres is not None and not arm.spheres.endswith(".csv"):
+        raise MalformedFile(where, f"`arm.spheres`: {arm.spheres!r} is not allowed; a table's name ends in .csv")
     radii = [radius for radius, _ in file.reach.heights]
     if not radii or radii[0] < 0.0 or radii != sorted(set(radii)):
         raise MalformedFile(where, "`reach.heights`: one pair or more of distance [m] and level, the nearest first")
@@ -159,4 +161,19 @@ def _read(path: Path, kind: type[_File], format_: str) -> _File:
     where = os.fspath(path)
     document: Any = parse_toml(read_bytes(path), where)
     check_format(document, where, format_)
-    return cast(_File, convert(document, kind, where))
+    file = cast(_File, convert(document, kind, where))
+    for key in _endless(document):
+        raise MalformedFile(where, f"`{key}`: finite numbers are allowed")
+    return file
+
+
+def _endless(value: Any, key: str = "") -> Iterator[str]:
+    """Yield the keys at which a document has numbers that are infinite or none."""
+    if isinstance(value, dict):
+        for name, part in value.items():
+            yield from _endless(part, f"{key}.{name}" if key else name)
+    elif isinstance(value, list):
+        for part in value:
+            yield from _endless(part, key)
+    elif isinstance(value, float) and not isfinite(value):
+        yield key

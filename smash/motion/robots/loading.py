@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
+from collections.abc import Set as AbstractSet
 from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
@@ -71,7 +72,8 @@ def _loaded(path: Path, _changed: int) -> Robot:
     hand.link(hand_file.root, "root", str(hand_path))
     urdf = compose(file, where, arm, hand, hand_file.root, hand_file.tool)
     _require_movable(file, where, urdf, hand_file, str(hand_path), set(hand.joints))
-    return _Assembly(path, file, hand_path, hand_file, urdf).robot()
+    links = {link.get("name", "") for link in hand.below(hand_file.root)[0]}
+    return _Assembly(path, file, hand_path, hand_file, urdf, links).robot()
 
 
 def _require_movable(
@@ -83,7 +85,8 @@ def _require_movable(
     arm = [name for name in moving if name not in of_hand]
     if arm != file.arm.joints:
         raise MalformedFile(
-            where, f"`arm.joints`: from base to flange the URDF has {', '.join(arm)}; these, in order, are allowed"
+            where,
+            f"`arm.joints`: from base to flange the URDF has {', '.join(arm) or 'none'}; these, in order, are allowed",
         )
     for name in arm:
         kind = joints[name].get("type")
@@ -91,7 +94,8 @@ def _require_movable(
             raise MalformedFile(where, f"joint {name!r} is {kind}; an arm's joints are revolute or continuous")
     fingers = [name for name in moving if name in of_hand]
     if sorted(fingers) != sorted(hand_file.fingers):
-        raise MalformedFile(hand_where, f"`fingers`: what moves in the URDF is {', '.join(fingers)}; these are allowed")
+        found = ", ".join(fingers) or "nothing"
+        raise MalformedFile(hand_where, f"`fingers`: what moves in the URDF is {found}; two joints are needed")
     for name in fingers:
         if joints[name].get("type") != "prismatic":
             raise MalformedFile(hand_where, f"joint {name!r} is {joints[name].get('type')}; fingers are prismatic")
@@ -108,8 +112,17 @@ def _require_movable(
 class _Assembly:
     """The parts of one robot on their way together."""
 
-    def __init__(self, path: Path, file: RobotFile, hand_path: Path, hand_file: HandFile, urdf: ET.Element) -> None:
+    def __init__(
+        self,
+        path: Path,
+        file: RobotFile,
+        hand_path: Path,
+        hand_file: HandFile,
+        urdf: ET.Element,
+        hand_links: AbstractSet[str],
+    ) -> None:
         self.path, self.where, self.file = path, str(path), file
+        self.hand_links = hand_links
         self.hand_path, self.hand_where, self.hand_file = hand_path, str(hand_path), hand_file
         self.tree = urdf
         self.text = ET.tostring(urdf, encoding="unicode")
@@ -119,6 +132,9 @@ class _Assembly:
             except ValueError as error:
                 reason = first_complaint(words(), str(error).splitlines()[0])
                 raise MalformedFile(self.where, f"its URDF cannot be read: {reason}") from None
+            if "Error:" in (said := words()):
+                # The reader goes on without the part of a link that it could not read.
+                raise MalformedFile(self.where, f"its URDF cannot be read: {first_complaint(said, said)}")
         fingers = [self.full.getJointId(name) for name in hand_file.fingers]
         self.model: Any = pinocchio.buildReducedModel(self.full, fingers, np.zeros(self.full.nq))
 
@@ -227,7 +243,7 @@ class _Assembly:
         file = self.hand_file
         root = self.full.frames[self.full.getFrameId(file.root, pinocchio.FrameType.BODY)]
         turned = _rotation(file.tool)
-        links = {name for name in _below(self.tree, file.root) if name != TOOL}
+        links = self.hand_links
         frames, fingers = [], []
         for name, side in zip(file.fingers, (1.0, -1.0), strict=True):
             joint = self.full.getJointId(name)
@@ -263,7 +279,9 @@ class _Assembly:
             tip=file.tip,
         )
 
-    def _corners(self, palm: set[str], finger: str, turned: Matrix) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _corners(
+        self, palm: AbstractSet[str], finger: str, turned: Matrix
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Least and greatest corners of palm and first finger in the hand's frame: the file's, else the meshes'."""
         if self.hand_file.boxes is not None:
             return np.array(self.hand_file.boxes.palm), np.array(self.hand_file.boxes.finger)
@@ -279,18 +297,6 @@ class _Assembly:
             inside = np.array([at_root.actInv(point) for point in points]) @ turned
             found.append(np.stack([inside.min(axis=0), inside.max(axis=0)]))
         return found[0], found[1]
-
-
-def _below(urdf: ET.Element, root: str) -> set[str]:
-    """The links that hang on one, it included."""
-    ends = [(joint.find("parent"), joint.find("child")) for joint in urdf.findall("joint")]
-    names, size = {root}, 0
-    while size < len(names):
-        size = len(names)
-        for parent, child in ends:
-            if parent is not None and child is not None and parent.get("link") in names:
-                names.add(child.get("link", ""))
-    return names
 
 
 def _rotation(place: PlaceFile) -> Matrix:
