@@ -96,9 +96,10 @@ def test_every_name_of_the_door_has_an_entry(site):
 def test_every_link_between_files_is_there():
     """Of the pages as they lie in the repository; the site's own links are read when it is built (slow)."""
     pages = (*ROOT.glob("*.md"), *(ROOT / "examples").rglob("*.md"), *DOCS.rglob("*.md"))
+    code = re.compile(r"^ *(```|~~~).*?^ *\1\s*$|`[^`\n]*`", re.MULTILINE | re.DOTALL)
     dead = {}
     for page in pages:
-        text = re.sub(r"^ *(```|~~~).*?^ *\1\s*$|`[^`\n]*`", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+        text = code.sub("", page.read_text(encoding="utf-8"))
         for link in re.findall(r"\]\((?!https?:|#)([^)#\s]+)", text):
             if not (page.parent / unquote(link)).exists():
                 dead[page.relative_to(ROOT).as_posix()] = link
