@@ -169,7 +169,8 @@ def test_citation_and_package_are_of_one_version_and_releases_have_a_heading(pro
     version = project["project"]["version"]
     assert re.search(r"^version: (.+)$", citation, re.MULTILINE)[1] == version
     released = re.search(r"^date-released: (.+)$", citation, re.MULTILINE)[1]
-    assert re.search(rf"^## \[?{re.escape(version)}\]? - {released}$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert re.search(rf"^## \[?{re.escape(version)}\]? - {released}$", changes, re.MULTILINE)
 
 
 def test_every_entry_that_the_paper_cites_is_in_its_bibliography():
