@@ -162,3 +162,17 @@ def test_the_page_of_licences_has_every_package_of_the_lock(locked):
         if "== 'win32'" not in text.splitlines()[0]
     }
     assert shown == on_linux
+
+
+def test_citation_and_package_are_of_one_version_and_releases_have_a_heading(project):
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    version = project["project"]["version"]
+    assert re.search(r"^version: (.+)$", citation, re.MULTILINE)[1] == version
+    released = re.search(r"^date-released: (.+)$", citation, re.MULTILINE)[1]
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert re.search(rf"^## \[?{re.escape(version)}\]? - {released}$", changes, re.MULTILINE)
+
+
+def test_every_entry_that_the_paper_cites_is_in_its_bibliography():
+    cited = set(re.findall(r"@([\w-]+)", (ROOT / "paper.md").read_text(encoding="utf-8")))
+    assert cited == set(re.findall(r"^@\w+\{([\w-]+),", (ROOT / "paper.bib").read_text(encoding="utf-8"), re.MULTILINE))

@@ -20,9 +20,10 @@ from smash.cli import COMMANDS, smash
 ROOT = Path(__file__).parents[2]
 PAGES = ("CONTRIBUTING.md", "CHANGELOG.md")
 """Pages beside `docs/`."""
-SHOWN = ("examples", "experiments", "domains")
-"""Folders whose files pages link to."""
+SHOWN = ("examples", "experiments", "domains", "LICENSE")
+"""Folders whose files pages link to, and single files."""
 LINK = re.compile(r"(?<=\]\()(?!https?:|#)([^)#\s]+)(?=[)#])")
+PICTURE = re.compile(r"^(!\[[^]\n]*\]\(([^)\s]+)\))$", re.MULTILINE)
 FENCE = re.compile(r"^```(\w+) (\S+)$", re.MULTILINE)
 NESTED = re.compile(r"^  (?=[-*] )", re.MULTILINE)
 EVERY_COMMAND = "<!-- every command -->"
@@ -32,8 +33,8 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add what lies outside of `docs/`: pages, and the files that pages link to."""
     for name in PAGES:
         files.append(File.generated(config, name, abs_src_path=str(ROOT / name)))
-    for folder in SHOWN:
-        for file in sorted((ROOT / folder).rglob("*")):
+    for name in SHOWN:
+        for file in (ROOT / name, *sorted((ROOT / name).rglob("*"))):
             if file.is_file() and "__pycache__" not in file.parts:
                 files.append(_copy(config, file))
     return files
@@ -42,7 +43,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 def _copy(config: MkDocsConfig, file: Path) -> File:
     """Return a file as the site has it: under its own name, or as text where a reader's browser would not show it."""
     name = file.relative_to(ROOT).as_posix()
-    if file.suffix in (".py", ".toml", ".pddl", ".md"):
+    if file.suffix in (".py", ".toml", ".pddl", ".md", ""):
         return File.generated(config, f"{name}.txt", content=file.read_bytes())
     return File.generated(config, name, abs_src_path=str(file))
 
@@ -51,6 +52,7 @@ def on_page_markdown(markdown: str, *, page: Page, config: MkDocsConfig, files: 
     """Make a page that GitHub shows one that this site shows."""
     if EVERY_COMMAND in markdown:
         markdown = markdown.replace(EVERY_COMMAND, _commands())
+    markdown = PICTURE.sub(r"[\1](\2){.picture}", markdown)  # a click shows it as large as it is
     markdown = FENCE.sub(lambda fence: f"```{fence[1]}" + _title(fence[2]), markdown)
     here = PurePosixPath(page.file.src_uri).parent
     return LINK.sub(lambda link: _target(link[1], here, page.file.src_uri, files), NESTED.sub("    ", markdown))

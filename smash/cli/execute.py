@@ -43,7 +43,7 @@ from smash.problem.files.plans import read_plan
 @click.option("--video-size", metavar="WxH", help="Of the film [pixels], multiples of 16 (default: 480x368).")
 @click.option("--video-speed", metavar="N", help="It runs N times as fast as simulated time (default: 4).")
 @click.option("--video-camera", metavar="YAW,PITCH,DISTANCE", help="In degrees and metres (default: 28,-40,1.45).")
-@click.option("--stills", type=click.Path(path_type=Path, dir_okay=False), help="Draw start, middle and end (.png).")
+@click.option("--stills", type=click.Path(path_type=Path, dir_okay=False), help="Draw start, topple and end (.png).")
 @click.option(
     "--trajectory",
     type=click.Path(path_type=Path, dir_okay=False),

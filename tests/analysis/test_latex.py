@@ -6,7 +6,7 @@ import subprocess
 
 import pandas as pd
 import pytest
-from smash_analysis.tables.latex import SIZE, latex, write_latex
+from smash_analysis.tables.latex import SIZE, latex, tex, write_latex
 
 WIDE = pd.DataFrame(
     {
@@ -36,6 +36,14 @@ def test_a_caption_has_no_number_of_its_own_and_nothing_is_scaled(wide):
     assert sizes
     assert all(float(size) >= 7 for size in sizes)
     assert SIZE >= 7
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [("-25 (-25 to -.5)", "$-$25 ($-$25 to $-$.5)"), ("multi-9-000", "multi-9-000"), ("[3]-1, 2 - 1", "[3]-1, 2 - 1")],
+)
+def test_a_number_below_zero_has_a_minus_and_no_hyphen(text, shown):
+    assert tex(text) == shown
 
 
 def test_a_long_table_goes_to_further_floats_and_loses_no_row():

@@ -91,3 +91,35 @@ def test_no_style_asks_the_net(site):
 def test_every_name_of_the_door_has_an_entry(site):
     anchors = Links(site / "reference" / "door.html").anchors
     assert {f"smash.{name}" for name in smash.__all__ if name != "__version__"} <= anchors
+
+
+def test_every_link_between_files_is_there():
+    """Of the pages as they lie in the repository; the site's own links are read when it is built (slow)."""
+    pages = (*ROOT.glob("*.md"), *(ROOT / "examples").rglob("*.md"), *DOCS.rglob("*.md"))
+    code = re.compile(r"^ *(```|~~~).*?^ *\1\s*$|`[^`\n]*`", re.MULTILINE | re.DOTALL)
+    dead = {}
+    for page in pages:
+        text = code.sub("", page.read_text(encoding="utf-8"))
+        for link in re.findall(r"\]\((?!https?:|#)([^)#\s]+)", text):
+            if not (page.parent / unquote(link)).exists():
+                dead[page.relative_to(ROOT).as_posix()] = link
+    assert dead == {}
+
+
+def test_what_pages_link_to_outside_of_them_is_in_the_site():
+    hooks = (DOCS / "site" / "hooks.py").read_text(encoding="utf-8")
+    shown = re.search(r"^SHOWN = \(([^)]*)\)", hooks, re.MULTILINE)[1]
+    inside = {"docs", *re.findall(r'"([\w.]+)"', shown), "CONTRIBUTING.md", "CHANGELOG.md"}
+    for page in DOCS.rglob("*.md"):
+        for link in re.findall(r"\]\((\.\./[^)#\s]+)", page.read_text(encoding="utf-8")):
+            target = (page.parent / link).resolve().relative_to(ROOT)
+            assert target.parts[0] in inside, f"{page.name} links to {target}"
+
+
+@pytest.mark.slow
+def test_no_list_or_table_has_run_into_a_paragraph(site):
+    """The site wants four spaces below an item where GitHub takes two, and an empty line before a table."""
+    for page in site.rglob("*.html"):
+        if page.parent.name != "reference":
+            run = r"<(p|li)>(?:(?!</?(?:p|li|ul|pre|table)\b).)*?\n(?:- |\| ?\w)"
+            assert not re.search(run, page.read_text(encoding="utf-8"), re.DOTALL), page

@@ -39,3 +39,11 @@ def test_a_trajectory_has_a_row_each_interval_of_simulated_time():
 def test_the_frame_of_a_moment_is_the_last_one_before_it(moment, frame):
     """Frames lie 0.08 s apart, the first at 0."""
     assert recording_of(1, seconds=0.96).at(moment) == frame
+
+
+@pytest.mark.parametrize(("begin", "end", "moment"), [(0.0, 0.96, 0.4), (0.5, 0.96, 0.72), (0.3, 0.3, 0.3)])
+def test_the_liveliest_moment_is_that_at_which_blocks_move_most(begin, end, moment):
+    recording = recording_of(2, seconds=0.96)
+    for frame, shift in ((5, 0.1), (9, 0.05)):  # 0.4 s and 0.72 s
+        recording.blocks[frame:] = [poses + np.eye(7)[0] * shift for poses in recording.blocks[frame:]]
+    assert recording.liveliest(begin, end) == pytest.approx(moment)

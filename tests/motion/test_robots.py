@@ -15,7 +15,7 @@ from smash.motion.planner import MotionPlanner
 from smash.motion.poses import top_down
 from smash.motion.reach import measured_reach
 from smash.motion.robots import load_robot, robot_names
-from smash.motion.robots.meshes import drawn_parts
+from smash.motion.robots.meshes import drawn_parts, is_closed
 from smash.motion.timing import Pace, time_path
 from smash.problem.errors import ExecutionFailure, MalformedFile, SmashError
 from tests.robots import PANDA, READY
@@ -305,3 +305,13 @@ def test_a_robot_of_one_s_own_is_told_from_another_version_of_it(tmp_path):
     assert one.label.startswith("six-")
     assert one.label == elsewhere.label
     assert one.label != two.label
+
+
+def test_a_mesh_with_a_hole_is_told_from_a_closed_one():
+    """The former is drawn by its hull: the Panda's sixth link, of all that is shipped."""
+    corner, x, y, z = np.zeros(3), *np.eye(3)
+    faces = [(corner, y, x), (corner, x, z), (corner, z, y), (x, y, z)]
+    pyramid = np.array([np.concatenate(face) for face in faces])
+    assert is_closed(pyramid)
+    assert not is_closed(pyramid[:3])
+    assert not is_closed(np.vstack([pyramid[:3], np.concatenate([x, z, y])]))  # one face looks inward

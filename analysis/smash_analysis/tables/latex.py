@@ -27,6 +27,8 @@ LEAD = 8.4
 NUMBERED = re.compile(r"^(Table|Figure) [IVX\d]+: ")
 PIECE = re.compile(r"\S{1,14}?[-/_](?=\w)|\S{1,18}")
 """What stays on one line: words; long names are broken behind a sign between two parts, or where they must be."""
+MINUS = re.compile(r"(?<![\w.)\]-])-(?=\.?\d)")
+"""The sign of a number."""
 EM = {"iljtfrI.,:;'|()[]! ": 0.36, "mwMW%@±≤×–": 0.95, "ABCDEFGHJKLNOPQRSTUVXYZ&+=<>": 0.78}
 """Letters -> how wide they are [em]; all others 0.57, which is a digit's."""
 TEX = {
@@ -40,7 +42,7 @@ TEX = {
 
 def tex(text: str) -> str:
     """Return a text as LaTeX shows it as it stands; a letter that its fonts lack is named by its code."""
-    return "".join(TEX.get(letter) or _plain(letter) for letter in text)
+    return "".join(TEX.get(letter) or _plain(letter) for letter in MINUS.sub("−", text))
 
 
 def _plain(letter: str) -> str:

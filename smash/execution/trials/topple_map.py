@@ -129,17 +129,17 @@ def estimates(scene: str, trials: Iterable[Trial]) -> Estimates:
 
 
 def draw(trials: Sequence[Trial], path: Path) -> None:
-    """Plot where blocks landed: a row per height of the cut, a column per number of falling blocks."""
+    """Plot where blocks landed: a row per number of falling blocks, a column per height of the cut; 7 inches wide."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.patches import Rectangle
 
     heights, sizes = sorted({t.height for t in trials}), sorted({t.falling for t in trials})
-    figure = Figure(figsize=(2.1 * len(sizes) + 0.6, 1.25 * len(heights) + 1.0), layout="constrained")
+    figure = Figure(figsize=(7.0, 0.62 * len(sizes) + 1.0), layout="constrained")
     FigureCanvasAgg(figure)
-    axes = figure.subplots(len(heights), len(sizes), squeeze=False, sharex=True, sharey=True)
-    for row, height in enumerate(heights):
-        for column, size in enumerate(sizes):
+    axes = figure.subplots(len(sizes), len(heights), squeeze=False, sharex=True, sharey=True)
+    for row, size in enumerate(sizes):
+        for column, height in enumerate(heights):
             axis, area = axes[row][column], strip(size)
             part = [t for t in trials if (t.height, t.falling) == (height, size)]
             corner = (0.0, -100 * area.half_width)
@@ -148,20 +148,24 @@ def draw(trials: Sequence[Trial], path: Path) -> None:
             for graspable, colour, marker in ((True, "#2f7d4f", "o"), (False, "#c0392b", "x")):
                 points = [p for t in part for p in t.landings if p.graspable == graspable]
                 axis.scatter(
-                    [100 * p.along for p in points], [100 * p.aside for p in points], s=9, c=colour, marker=marker
+                    [100 * p.along for p in points], [100 * p.aside for p in points], s=7, c=colour, marker=marker
                 )
-            axis.set_title(f"{sum(t.success for t in part)}/{len(part)}" if part else "–", fontsize=8, pad=2)
-            axis.set_aspect("equal")
+            good = f"{sum(t.success for t in part)} of {len(part)}" if part else "not tried"
+            axis.text(0.98, 0.94, good, transform=axis.transAxes, ha="right", va="top", fontsize=7)
             axis.tick_params(labelsize=7)
+            if row == 0:
+                axis.set_title(f"cut at {height}", fontsize=9)
             if column == 0:
-                axis.set_ylabel(f"cut at {height}\naside [cm]", fontsize=8)
-            if row == len(heights) - 1:
-                axis.set_xlabel(f"along [cm]\n{size} falling", fontsize=8)
+                axis.set_ylabel(f"{size} fall{'' if size > 1 else 's'}", fontsize=8)
+            if row == len(sizes) - 1:
+                axis.set_xlabel("along the push [cm]", fontsize=8)
     # The second of several pushes may go the other way.
     nearest = min((100 * landing.along for trial in trials for landing in trial.landings), default=0.0)
     axes[0][0].set(xlim=(min(-12.0, nearest - 5), 82), ylim=(-18, 18))
+    figure.supylabel("aside [cm]", fontsize=8)
     figure.suptitle(
-        "Landings of toppled blocks (successes/trials); red: cannot be grasped from above; shaded: first push's strip",
-        fontsize=9,
+        "Where toppled blocks come to lie, and how many topples went well\n"
+        "red: cannot be grasped from above; shaded: the strip of the first push; square: the pile",
+        fontsize=8,
     )
-    figure.savefig(path, dpi=150)
+    figure.savefig(path, dpi=200)

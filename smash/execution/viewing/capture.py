@@ -102,13 +102,13 @@ class Capture:
         from smash.execution.viewing.pictures import write_stills
 
         times = self.recording.times
-        middle = next(
-            (row.begun + row.times.execution for row in episode.actions if row.action[0] == "topple"),
-            times[len(times) // 2],
-        )
-        toppled = any(row.action[0] == "topple" for row in episode.actions)
-        end = "end" if episode.success else "end (failed)"
-        captions = [("start", times[0]), ("after the topple" if toppled else "on the way", middle), (end, times[-1])]
+        captions = [("start", times[0]), ("on the way", times[len(times) // 2])]
+        topple = next((row for row in episode.actions if row.action[0] == "topple"), None)
+        if topple is not None:
+            after = topple.begun + topple.times.execution
+            falling = self.recording.liveliest(topple.begun, after)
+            captions[1:] = [("the topple", falling), ("after the topple", after)]
+        captions.append(("end" if episode.success else "end (failed)", times[-1]))
         write_stills(path, self.recording, tabletop, captions)
 
 

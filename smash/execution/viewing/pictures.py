@@ -9,7 +9,7 @@ from smash.execution.scene.tabletop import Tabletop
 from smash.execution.viewing.painters import stage_class
 from smash.execution.viewing.recording import Recording
 
-SIZE = (960, 640)
+SIZE = (720, 600)
 """Width and height of a picture [pixels]."""
 
 
@@ -25,7 +25,7 @@ def write_stills(path: Path, recording: Recording, tabletop: Tabletop, moments: 
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(4.8 * len(moments), 3.5), layout="constrained")
+    figure = Figure(figsize=(3.6 * len(moments), 3.25), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(1, len(moments), squeeze=False)[0]
     with stage_class()(tabletop, recording.names, len(recording.trays[0])) as stage:

@@ -55,6 +55,15 @@ class Recording:
         """Index of the last frame at or before `moment` [s]."""
         return max(0, int(np.searchsorted(self.times, moment + 1e-6)) - 1)
 
+    def liveliest(self, begin: float, end: float) -> float:
+        """Moment between two [s] at which the blocks move most; `begin` where nothing was recorded between them."""
+        first, last = self.at(begin), self.at(end)
+        if last <= first:
+            return begin
+        places = np.array(self.blocks[first : last + 1])[:, :, :3]
+        moved = np.linalg.norm(np.diff(places, axis=0), axis=2).sum(axis=1)
+        return self.times[first + 1 + int(moved.argmax())]
+
 
 def _rows(poses: Iterable[BlockPose]) -> NDArray[np.float64]:
     return np.array([[*pose.position, *quaternion_of(pose.rotation)] for pose in poses]).reshape(-1, 7)

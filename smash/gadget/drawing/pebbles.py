@@ -140,7 +140,7 @@ def _strip(motion: PebbleMotion, captions: list[str]) -> Figure:
     wide, tall = SCALE * (layout.right - layout.left + 2.6), SCALE * (high - low) + 0.3
     staging = motion.gadget.staging
     layers = strip_layers(captions, [step for step in range(motion.steps) if motion.active_in(step) in staging])
-    columns = min(len(layers), (5 if len(layers) == 5 else 4) if wide < 5 else 2)
+    columns = min(len(layers), 3 if wide < 5 else 2)
     rows = -(-len(layers) // columns)
     figure = new_figure(columns * wide, rows * tall)
     for index, layer in enumerate(layers):

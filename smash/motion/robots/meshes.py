@@ -98,11 +98,22 @@ def drawn_parts(robot: Robot) -> list[NDArray[np.float64]]:
     return [np.vstack(found) if found else np.empty((0, 9)) for found in parts]
 
 
+def is_closed(triangles: NDArray[np.float64]) -> bool:
+    """Tell whether triangles [m], shape (T, 9), leave no hole: each edge belongs to a neighbour the other way round."""
+    places = np.round(triangles.reshape(-1, 3), 6)
+    corners_of = np.unique(places, axis=0, return_inverse=True)[1].reshape(-1, 3)
+    edges = np.vstack([corners_of[:, [0, 1]], corners_of[:, [1, 2]], corners_of[:, [2, 0]]])
+    known = set(map(tuple, edges[edges[:, 0] != edges[:, 1]].tolist()))
+    return all((end, start) in known for start, end in known)
+
+
 def _triangles(shape: Any) -> NDArray[np.float64]:
-    """The triangles of a shape [m], shape (T, 9): of its mesh, or of its hull where there is none or it is too fine."""
+    """The triangles of a shape [m], shape (T, 9): of its mesh; of its hull where that has holes or is too fine."""
     if isinstance(shape, coal.BVHModelBase) and shape.num_tris <= MOST_TRIANGLES:
         points, rows = np.array(shape.vertices()), [shape.tri_indices(index) for index in range(shape.num_tris)]
-        return np.asarray(points[np.array([[row[0], row[1], row[2]] for row in rows])].reshape(-1, 9))
+        triangles = np.asarray(points[np.array([[row[0], row[1], row[2]] for row in rows])].reshape(-1, 9))
+        if is_closed(triangles):
+            return triangles
     points = np.array(shape.vertices()) if isinstance(shape, coal.BVHModelBase) else box_corners(shape)
     hull = ConvexHull(points)
     first, second, third = (points[hull.simplices[:, corner]] for corner in range(3))
