@@ -1,4 +1,4 @@
-"""`smash`, the default planner: greedy at once, then the exact methods, cheapest first, and beams, under one budget."""
+"""`smash`, the default planner: greedy at once, the exact methods, cheapest first, beams and neighbourhoods, one budget."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from typing import ClassVar
 
 from smash.planners.astar import BeamSearch, StateSearch, search_law_states
 from smash.planners.greedy import GreedyRun, end_of
+from smash.planners.neighbourhood import NeighbourhoodSearch
+from smash.planners.neighbourhood.course import steps_of
 from smash.planners.protocol import (
     HIGHS,
     SOLVERS,
@@ -42,7 +44,7 @@ PRECEDENCE_SHARE = 0.3
 """Share of the remaining budget for the precedence graph where the other exact methods have a chance too."""
 FEW_BLOCKS = 40
 """With more blocks than this the search over states and the layered model prove nothing more."""
-MANY_BLOCKS, PASSES_SHARE = 250, 0.5
+MANY_BLOCKS, PASSES_SHARE = 250, 0.2
 """With more blocks a pass of the beam takes a minute: greedy passes get this share of the time left before it."""
 LARGE_SHARE = 0.6
 """Share of the remaining budget for the precedence graph with more blocks: the beam gets the rest."""
@@ -59,6 +61,8 @@ WIDE_SEARCH_SHARE, LARGE_SEARCH_SHARE = 0.4, 0.2
 """The share of the search over states where a beam is likelier to help: more than `SMALL_BLOCKS`, `FEW_BLOCKS`."""
 BEAM_SHARE = 0.7
 """Share of what the layered model leaves for the beam; the exact search has the rest, if it can use it."""
+FIRST_NEIGHBOURHOODS, NEIGHBOURHOODS_SHARE = 0.25, 0.5
+"""Share of the time left for neighbourhoods of the best plan, before the exact search and before the last beams."""
 LAYERED_SHARE = 0.5
 """Share of the remaining budget for the layered model, where more comes after it."""
 
@@ -105,6 +109,7 @@ class SmashPlanner(MethodPlanner):
             Method("greedy to its end", plain, part.greedy),
             Method("greedy passes", plain, part.greedy_passes, FIRST_SHARE, FIRST_SECONDS),
             Method("first beam", plain, part.beams, FIRST_SHARE, FIRST_SECONDS),
+            Method("first neighbourhoods", plain, part.neighbourhoods, FIRST_NEIGHBOURHOODS),
             Method("search", plain, part.search, wide_share),
         )
         if blocks > MANY_BLOCKS:
@@ -116,10 +121,10 @@ class SmashPlanner(MethodPlanner):
             Method("the law's states", not_plain, search_law_states, SEARCH_SHARE),
             Method("layered", lambda problem: plain(problem) or modelled(problem), part.layered, LAYERED_SHARE),
             Method("layered to the end", lambda problem: not_plain(problem) or modelled(problem), part.layered),
+            Method("neighbourhoods", plain, part.neighbourhoods, NEIGHBOURHOODS_SHARE),
             Method("beam", plain, part.beams, lambda: part.beam_share(problem)),
             Method("search to the end", plain, part.search),
-            Method("beam to the end", plain, part.beams),
-            Method("greedy passes to the end", plain, part.greedy_passes),
+            Method("neighbourhoods to the end", plain, part.neighbourhoods),
         )
 
 
@@ -145,6 +150,7 @@ class _Parts:
         self._search: StateSearch | None = None
         self._beam: BeamSearch | None = None
         self._greedy: GreedyRun | None = None
+        self._neighbourhoods: NeighbourhoodSearch | None = None
 
     @staticmethod
     def greedy_share(problem: Problem) -> float:
@@ -218,6 +224,22 @@ class _Parts:
         if beam.ended == "proven":
             log.prove(min(beam.upper, cost if log.upper is None else log.upper), "beam")
         log.details |= {"beam": beam.ended, "beam_width": beam.width}
+
+    def neighbourhoods(self, problem: Problem, log: SolveLog, until: float) -> None:
+        """Plan parts of the best plan anew, as often as there is time."""
+        if log.best is None:  # there was no time for a greedy plan
+            return
+        if self._neighbourhoods is None:
+            self._neighbourhoods = NeighbourhoodSearch(problem, self.settings.seed)
+        search = self._neighbourhoods
+        while not log.settled:
+            if search.cost != log.cost:  # others have found a better one, or the law has refused this one
+                search.take(steps_of(problem.numbered, log.best))
+            steps = search.run(until)
+            if steps is None:
+                break
+            log.offer(problem.numbered.actions(steps), "lns")
+        log.details["neighbourhoods"] = search.tried
 
     def precedence(self, problem: Problem, log: SolveLog, until: float) -> None:
         """Bound the cost by the precedence graph, and schedule its choices; greedy passes come first if none fits."""
