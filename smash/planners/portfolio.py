@@ -1,4 +1,4 @@
-"""`smash`, the default planner: greedy at once, the exact methods, cheapest first, beams and neighbourhoods, one budget."""
+"""`smash`, the default planner: greedy, the exact methods, beams and neighbourhoods under one budget."""
 
 from __future__ import annotations
 
@@ -45,7 +45,8 @@ PRECEDENCE_SHARE = 0.3
 FEW_BLOCKS = 40
 """With more blocks than this the search over states and the layered model prove nothing more."""
 MANY_BLOCKS, PASSES_SHARE = 250, 0.2
-"""With more blocks a pass of the beam takes a minute: greedy passes get this share of the time left before it."""
+"""With more blocks a pass of the beam takes a minute: greedy passes get this share of the time left, and no beam comes
+before the neighbourhoods."""
 LARGE_SHARE = 0.6
 """Share of the remaining budget for the precedence graph with more blocks: the beam gets the rest."""
 LEAST_SHARE = 0.1
@@ -59,9 +60,11 @@ FIRST_SHARE, FIRST_SECONDS = 0.1, 1.0
 that leave out more."""
 WIDE_SEARCH_SHARE, LARGE_SEARCH_SHARE = 0.4, 0.2
 """The share of the search over states where a beam is likelier to help: more than `SMALL_BLOCKS`, `FEW_BLOCKS`."""
-BEAM_SHARE = 0.7
-"""Share of what the layered model leaves for the beam; the exact search has the rest, if it can use it."""
-FIRST_NEIGHBOURHOODS, NEIGHBOURHOODS_SHARE = 0.25, 0.5
+BEAM_SHARE, LARGE_BEAM_SHARE = 0.5, 0.2
+"""Share of what neighbourhoods leave for the beam; the second with more than `MANY_BLOCKS`."""
+AGAIN_SHARE = 0.5
+"""Share of what the beam leaves for the exact search, if it can use it; neighbourhoods have the rest."""
+FIRST_NEIGHBOURHOODS, NEIGHBOURHOODS_SHARE = 0.15, 0.5
 """Share of the time left for neighbourhoods of the best plan, before the exact search and before the last beams."""
 LAYERED_SHARE = 0.5
 """Share of the remaining budget for the layered model, where more comes after it."""
@@ -122,8 +125,8 @@ class SmashPlanner(MethodPlanner):
             Method("layered", lambda problem: plain(problem) or modelled(problem), part.layered, LAYERED_SHARE),
             Method("layered to the end", lambda problem: not_plain(problem) or modelled(problem), part.layered),
             Method("neighbourhoods", plain, part.neighbourhoods, NEIGHBOURHOODS_SHARE),
-            Method("beam", plain, part.beams, lambda: part.beam_share(problem)),
-            Method("search to the end", plain, part.search),
+            Method("beam", plain, part.beams, BEAM_SHARE if blocks <= MANY_BLOCKS else LARGE_BEAM_SHARE),
+            Method("search again", plain, part.search, AGAIN_SHARE),
             Method("neighbourhoods to the end", plain, part.neighbourhoods),
         )
 
@@ -160,11 +163,6 @@ class _Parts:
     def precedence_share(self, problem: Problem) -> float:
         """Return the share of the time left that the precedence graph may take."""
         return PRECEDENCE_SHARE if len(problem.instance.blocks) <= FEW_BLOCKS else LARGE_SHARE
-
-    def beam_share(self, problem: Problem) -> float:
-        """Return the share of the time left for beams: all of it where the exact search over states can do no more."""
-        ended = self._search is not None and self._search.ended is not None
-        return 1.0 if ended or len(problem.instance.blocks) > MANY_BLOCKS else BEAM_SHARE
 
     def greedy(self, problem: Problem, log: SolveLog, until: float) -> None:
         """Plan as the greedy planner alone does: with the time for it no plan is dearer than its."""

@@ -18,12 +18,14 @@ class Arm:
         width: of the beam that plans a window; 0 for a greedy tail.
         effort: what has been spent on it, and once more what it is thought to take [about seconds].
         gain: what it saved lately.
+        gathers: whether the steps of its windows are gathered from a longer stretch.
     """
 
     size: int
     width: int
     effort: float
     gain: float = 0.0
+    gathers: bool = False
 
     def paid(self, gain: int, effort: float) -> None:
         """Note what came of it."""

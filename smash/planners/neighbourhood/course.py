@@ -6,6 +6,7 @@ import random
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from smash.problem.actions.topple import Topple
 from smash.problem.model import TABLE, Action, Pick, Place
 from smash.problem.views.numbered import ON_TABLE, TOPPLE, Numbered, Step
 
@@ -55,6 +56,9 @@ def steps_of(problem: Numbered, actions: Sequence[Action]) -> list[Step]:
     Args:
         problem: the numbered instance, of an empty hand.
         actions: the plan.
+
+    Raises:
+        ValueError: where it has another action.
     """
     number = {location: index for index, location in enumerate(problem.instance.locations)}
     heights = [len(pile) for pile in problem.start]
@@ -71,11 +75,13 @@ def steps_of(problem: Numbered, actions: Sequence[Action]) -> list[Step]:
                     heights[target] += 1
                     if source != ON_TABLE:
                         heights[source] -= 1
-            case topple:
-                location = number[topple.location]
-                falling = heights[location] - topple.height + 1
+            case Topple():
+                location = number[action.location]
+                falling = heights[location] - action.height + 1
                 heights[location] -= falling
                 steps.append((TOPPLE, location, falling))
+            case _:
+                raise ValueError(f"{action} is no pick, place or topple")
     return steps
 
 

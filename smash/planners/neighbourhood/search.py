@@ -9,6 +9,7 @@ in seconds, so that the same seed goes the same way as far as the time allows.
 
 from __future__ import annotations
 
+import itertools
 import random
 from collections.abc import Sequence
 from dataclasses import replace
@@ -21,10 +22,12 @@ from smash.planners.greedy.construct import NEVER, Construction
 from smash.planners.greedy.shorten import shorten
 from smash.planners.neighbourhood.arms import Arm, choose
 from smash.planners.neighbourhood.course import arrangement_after, without_detours
+from smash.planners.neighbourhood.gathering import gathered, places_of
 from smash.planners.neighbourhood.windows import final_piles, window_of
 from smash.planners.protocol import left
 from smash.problem.problem import Problem
 from smash.problem.views.numbered import TOPPLE, Step, cost_of
+from smash.problem.views.targets import goal_piles
 
 SIZES = (6, 9, 14, 20, 30, 45, 70, 100)
 """Steps of windows."""
@@ -42,10 +45,18 @@ STATE, BEAM = 1.5e-7, 2e-3
 """What a state takes to be expanded, per block and pair of piles, and a beam to begin [about seconds]."""
 STEP, TAIL = 3e-5, 5e-4
 """What a greedy step takes, and a tail to begin [about seconds]."""
+DETOUR = 1e-5
+"""What a step takes to be looked at for detours, at most [s]."""
 MARGIN = 100
 """Steps before and after a change where put-asides may have become needless."""
-LEAST_PLACES = 3
-"""With fewer locations and no topple there is no greedy tail."""
+STRETCHES = (2, 4, 8, 16)
+"""Of how many times as many steps the steps of some locations are gathered to a window."""
+MOST_GATHERED = 2.0
+"""A gathered window has no more than so many times the steps of its arm."""
+MOST_JOINED = 4
+"""Steps whose locations a gathered window has, beside those of a first one."""
+LEAST_PLACES, MANY_PLACES = 3, 5
+"""With fewer locations and no topple there is no greedy tail; with fewer than the second nothing is gathered."""
 
 
 class NeighbourhoodSearch:
@@ -63,7 +74,7 @@ class NeighbourhoodSearch:
         self._steps: list[Step] = []
         self._cost = 0
         self._arms: list[Arm] = []
-        self._best_windows: set[tuple[Any, ...]] = set()
+        self._least: dict[tuple[Any, ...], int] = {}
         self._code: Any = None
         self._class_of: list[int] = []
         self._plainly_moved = not problem.options.topple and not self._numbered.table
@@ -94,7 +105,7 @@ class NeighbourhoodSearch:
             better = self._settled(self._steps, deadline)
             if better is not None:
                 return better
-        while self._arms and left(deadline) > 0:
+        while self._arms and self._steps and left(deadline) > 0:
             before = self._cost
             arm = choose(self._arms, self._draw)
             effort = self._window(arm, deadline) if arm.width else self._tail(arm, deadline)
@@ -110,31 +121,32 @@ class NeighbourhoodSearch:
         arms = []
         for size in (size for size in SIZES if size <= 2 * len(self._steps)):
             moved, piles = min(blocks, size), min(places, size)
-            arms += [Arm(size, width, BEAM + STATE * moved * piles**2 * width * size) for width in WIDTHS]
+            for width, gathers in itertools.product(WIDTHS, (False, True) if places >= MANY_PLACES else (False,)):
+                arms.append(Arm(size, width, BEAM + STATE * moved * piles**2 * width * size, gathers=gathers))
         if self._problem.options.topple or places >= LEAST_PLACES:
             arms += [Arm(size, 0, TAIL + STEP * len(self._steps)) for size in TAILS]
         return arms
 
     def _window(self, arm: Arm, deadline: float) -> float:
         """Plan a window anew; return the effort."""
+        begin, end = self._gather(arm.size) if arm.gathers else self._stretch(arm.size)
         steps, count = self._steps, len(self._steps)
-        begin = self._draw.randrange(1 - arm.size // 2, max(2 - arm.size // 2, count - arm.size // 2))
-        begin, end = max(0, begin), min(count, max(0, begin) + arm.size)
         final = final_piles(self._numbered, arrangement_after(self._numbered, steps)) if end == count else None
-        if end == count and final is None:
+        if end - begin < 2 or (end == count and final is None):
             return BEAM
         window = window_of(self._numbered, arrangement_after(self._numbered, steps[:begin]), steps[begin:end], final)
         if window is None:
             return BEAM
-        key = (window.blocks, window.problem.start, tuple(window.problem.instance.goal.stacks.items()), arm.size)
-        if key in self._best_windows:
+        cost = cost_of(steps[begin:end])
+        key = (window.blocks, window.locations, window.problem.start, goal_piles(window.problem))
+        if self._least.get(key) == cost:
             return BEAM
         turned = window.whole and self._plainly_moved and self._draw.random() < 0.5
         problem = window.reversed() if turned else window.problem
         running = BeamPass(
             make_setting(problem, self._problem.options),
             self._code,
-            cost_of(steps[begin:end]) + 1,
+            cost + 1,
             arm.width,
             MOST_MEMORY,
             self._draw.getrandbits(30),
@@ -144,15 +156,38 @@ class NeighbourhoodSearch:
         while not running.over and left(deadline) > 0:
             found = running.advance()
             moves = moves if found is None else found
+        made = None if moves is None else running.engine.steps(problem, moves)
         if running.over and not running.truncated:
-            self._best_windows.add(key)
-        if moves is not None:
-            made = running.engine.steps(problem, moves)
+            self._least[key] = cost if made is None else cost_of(made)
+        if made is not None:
             if turned:
                 made = [(block, target, source) for block, source, target in reversed(made)]
             self._put(begin, end, window.in_plan(made), deadline)
         piles = min(problem.locations, problem.blocks)
         return BEAM + STATE * problem.blocks * piles**2 * running.expanded
+
+    def _stretch(self, size: int) -> tuple[int, int]:
+        """Draw a stretch of the plan; return its first step and the one after its last."""
+        count = len(self._steps)
+        begin = max(0, self._draw.randrange(1 - size // 2, max(2 - size // 2, count - size // 2)))
+        return begin, min(count, begin + size)
+
+    def _gather(self, size: int) -> tuple[int, int]:
+        """Draw some locations, and bring their steps in some stretch together: return where they are then."""
+        begin, end = self._stretch(size * self._draw.choice(STRETCHES))
+        steps = self._steps[begin:end]
+        places = set(places_of(self._draw.choice(steps)))
+        for _ in range(self._draw.randint(1, MOST_JOINED)):
+            places.update(places_of(self._draw.choice(steps)))
+        while True:
+            chosen = {index for index, step in enumerate(steps) if places.issuperset(places_of(step))}
+            before, together, after = gathered(steps, chosen)
+            if len(together) <= MOST_GATHERED * size:
+                break
+            steps = steps[: len(steps) // 2]
+        begin_of_rest = begin + len(steps)
+        self._steps = [*self._steps[:begin], *before, *together, *after, *self._steps[begin_of_rest:]]
+        return begin + len(before), begin + len(before) + len(together)
 
     def _tail(self, arm: Arm, deadline: float) -> float:
         """Have the greedy planner make a tail anew; return the effort."""
@@ -198,7 +233,9 @@ class NeighbourhoodSearch:
 
     def _settled(self, steps: list[Step], deadline: float) -> list[Step] | None:
         """Take over a plan without its detours; return it if it is better."""
-        steps = without_detours(self._numbered, shorten(steps, deadline), self._class_of)
+        steps = shorten(steps, deadline)
+        if DETOUR * len(steps) < left(deadline):
+            steps = without_detours(self._numbered, steps, self._class_of)
         better = cost_of(steps) < self._cost
         self._steps, self._cost = steps, cost_of(steps)
         return steps if better else None

@@ -66,9 +66,7 @@ class Window:
         assert isinstance(instance.goal, StacksGoal)
         goal = StacksGoal({location: pile for location, pile in instance.start.items() if pile})
         start = {location: instance.goal.stacks.get(location, ()) for location in instance.locations}
-        return Numbered.of(
-            Instance(instance.name, instance.blocks, instance.stacks, instance.buffers, start, goal)
-        )
+        return Numbered.of(Instance(instance.name, instance.blocks, instance.stacks, instance.buffers, start, goal))
 
 
 def window_of(

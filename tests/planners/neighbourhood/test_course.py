@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from smash.planners.astar.task import make_setting
 from smash.planners.neighbourhood.course import arrangement_after, steps_of, without_detours
-from smash.problem import OnGoal, Pick, Place, PlanOptions, StacksGoal, Topple, make_instance
+from smash.problem import Lift, OnGoal, Pick, Place, PlanOptions, StacksGoal, Topple, make_instance
 from smash.problem.problem import Problem
 from smash.problem.views.numbered import ON_TABLE, TOPPLE, cost_of
 from tests.planners.neighbourhood.wandering import verdict_on, wandering_plan
@@ -29,7 +29,8 @@ def test_actions_become_the_steps_that_they_came_from_and_lead_to_the_laws_state
 
 
 def test_a_block_that_is_put_back_makes_no_step():
-    instance = make_instance(name="x", blocks="ab", stacks=["s1"], start={"s1": "a"}, table="b", goal=OnGoal({"b": "a"}))
+    goal = OnGoal({"b": "a"})
+    instance = make_instance(name="x", blocks="ab", stacks=["s1"], start={"s1": "a"}, table="b", goal=goal)
     numbered = Problem(instance, PlanOptions()).numbered
     actions = (Pick("a", "s1"), Place("a", "s1"), Topple("s1", 1), Pick("b", "table"), Place("b", "s1"))
     assert steps_of(numbered, actions) == [(TOPPLE, 0, 1), (1, ON_TABLE, 0)]
@@ -66,3 +67,9 @@ def test_what_goes_to_one_buffer_and_on_to_another_goes_there_at_once(buffer):
     shorter = without_detours(problem.numbered, steps, make_setting(problem.numbered, problem.options).class_of)
     assert cost_of(shorter) == cost_of(steps) - 2
     assert verdict_on(problem, shorter).accepted
+
+
+def test_other_actions_make_no_steps():
+    numbered = Problem(make_instance(name="x", blocks="a", stacks=["s1"], start={"s1": "a"}, goal=OnGoal({}))).numbered
+    with pytest.raises(ValueError, match="no pick"):
+        steps_of(numbered, (Lift("s1", 1, "s1"),))

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from smash.planners.greedy import greedy_steps
 from smash.planners.neighbourhood import NeighbourhoodSearch, search
+from smash.planners.neighbourhood.arms import Arm
 from smash.problem import PlanOptions
 from smash.problem.problem import Problem
 from smash.problem.sets.generators import generate
@@ -74,7 +75,7 @@ def test_a_greedy_plan_of_twenty_blocks_is_bettered(kind, topple):
     options = PlanOptions(topple, max_topple=2 if topple else None)
     problem = Problem(draw_instance("x", shape, random.Random(3)), options)
     steps = first_plan(problem)
-    plans, last = improved(problem, steps)
+    last = improved(problem, steps)[1]
     assert verdict_on(problem, last).accepted
     assert topple or cost_of(last) < cost_of(steps)
 
@@ -114,24 +115,21 @@ def test_a_plan_too_short_to_be_taken_apart_is_left_alone():
     assert (plans, last) == ([], [])
 
 
-def test_a_window_that_has_no_better_plan_is_not_planned_twice():
+def test_a_window_that_has_no_better_plan_is_not_planned_twice(monkeypatch):
     problem = Problem(generate("multi", 6, buffers=0, seed=4)[0], PlanOptions(topple=False))
-    searching = Stopped(problem, 1)
-    searching.tries = 400
+    best = optimal_cost(problem.instance, problem.options)
+    searching = NeighbourhoodSearch(problem, 1)
     searching.take(first_plan(problem))
-    while searching.run(math.inf) is not None:
-        pass
-    begun = []
-    made = search.BeamPass
+    searching.run(perf_counter())
+    monkeypatch.setattr(searching, "_stretch", lambda size: (0, len(searching._steps)))
+    arm, made, begun = Arm(100, 10**6, 1.0), search.BeamPass, []
 
     def noted(*given, **named):
         begun.append(given)
         return made(*given, **named)
 
-    search.BeamPass = noted
-    try:
-        searching._arms, searching.tries = searching._all_arms(), 480
-        searching.run(math.inf)
-    finally:
-        search.BeamPass = made
-    assert len(begun) < 60
+    monkeypatch.setattr(search, "BeamPass", noted)
+    efforts = [searching._window(arm, math.inf) for _ in range(3)]
+    assert searching.cost == best
+    assert len(begun) == 1
+    assert efforts[0] > efforts[1] == efforts[2]

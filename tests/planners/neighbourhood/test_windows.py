@@ -25,7 +25,11 @@ def windows_of(problem, steps, begin, end):
 
 @settings(max_examples=200, deadline=None)
 @given(
-    instances(max_blocks=4, kinds=EVERY_KIND), plan_options(), st.integers(0, 9999), st.integers(0, 8), st.integers(1, 9)
+    instances(max_blocks=4, kinds=EVERY_KIND),
+    plan_options(),
+    st.integers(0, 9999),
+    st.integers(0, 8),
+    st.integers(1, 9),
 )
 def test_the_steps_of_a_window_are_a_plan_of_its_problem(instance, options, seed, begin, size):
     planned = wandering_plan(instance, options, seed)
