@@ -1,4 +1,4 @@
-"""Steps that belong together brought together: the order of a plan is loosened where steps do not concern each other."""
+"""Steps that belong together brought together: steps that share no place can change their order."""
 
 from __future__ import annotations
 
