@@ -29,7 +29,7 @@ from smash.problem.problem import Problem
 from smash.problem.views.numbered import TOPPLE, Step, cost_of
 from smash.problem.views.targets import goal_piles
 
-SIZES = (6, 9, 14, 20, 30, 45, 70, 100, 150, 10_000)
+SIZES, WHOLE = (6, 9, 14, 20, 30, 45, 70, 100, 150), 1_000_000
 """Steps of windows; the last is the whole plan, to the end that it has."""
 WIDTHS = (4, 16, 64, 256, 1024, 4096)
 """Of the beams that plan them."""
@@ -119,11 +119,11 @@ class NeighbourhoodSearch:
         """Return the arms, each with what it is thought to take."""
         blocks, places = self._numbered.blocks, self._numbered.locations
         arms = []
-        for size in SIZES:
+        for size in (*(size for size in SIZES if size < len(self._steps)), WHOLE):
             count = min(size, len(self._steps))
             moved, piles = min(blocks, count), min(places, count)
             for width, gathers in itertools.product(WIDTHS, (False, True)):
-                if not gathers or (places >= MANY_PLACES and size <= len(self._steps)):
+                if not gathers or (places >= MANY_PLACES and size < WHOLE):
                     arms.append(Arm(size, width, BEAM + STATE * moved * piles**2 * width * count, gathers=gathers))
         if self._problem.options.topple or places >= LEAST_PLACES:
             arms += [Arm(size, 0, TAIL + STEP * len(self._steps)) for size in TAILS]
