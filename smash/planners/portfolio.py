@@ -28,7 +28,7 @@ from smash.planners.protocol import (
     settings_of,
 )
 from smash.problem.actions.registry import FAMILY
-from smash.problem.model import Instance, OnGoal, PlanOptions
+from smash.problem.model import Action, Instance, OnGoal, PlanOptions
 from smash.problem.problem import Problem
 
 GREEDY_SHARE = 0.1
@@ -154,6 +154,8 @@ class _Parts:
         self._beam: BeamSearch | None = None
         self._greedy: GreedyRun | None = None
         self._neighbourhoods: NeighbourhoodSearch | None = None
+        self._bettered: tuple[Action, ...] | None = None
+        """The plan whose neighbourhoods are searched."""
 
     @staticmethod
     def greedy_share(problem: Problem) -> float:
@@ -231,12 +233,13 @@ class _Parts:
             self._neighbourhoods = NeighbourhoodSearch(problem, self.settings.seed)
         search = self._neighbourhoods
         while not log.settled:
-            if search.cost != log.cost:  # others have found a better one, or the law has refused this one
+            if self._bettered is not log.best:  # others have found a better one, or the law has refused this one
                 search.take(steps_of(problem.numbered, log.best))
+                self._bettered = log.best
             steps = search.run(until)
             if steps is None:
                 break
-            log.offer(problem.numbered.actions(steps), "lns")
+            self._bettered = log.best if log.offer(problem.numbered.actions(steps), "lns") else None
         log.details["neighbourhoods"] = search.tried
 
     def precedence(self, problem: Problem, log: SolveLog, until: float) -> None:

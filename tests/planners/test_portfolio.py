@@ -224,6 +224,32 @@ def test_costs_are_left_to_the_search_over_the_laws_states_and_to_the_layered_mo
     assert rows(sized(blocks, is_plain=False)) == [*general, *layered]
 
 
+def test_where_the_law_refuses_a_neighbour_the_best_plan_is_taken_up_again(monkeypatch):
+    taken, found = [], iter([[], None])
+
+    class Neighbours:
+        tried = 2
+
+        def __init__(self, problem, seed):
+            pass
+
+        def take(self, steps):
+            taken.append(steps)
+
+        def run(self, until):
+            return next(found)
+
+    monkeypatch.setattr("smash.planners.portfolio.NeighbourhoodSearch", Neighbours)
+    problem = Problem(generate("multi", 6, seed=1)[0], PlanOptions(topple=False))
+    log, part = SolveLog(problem), _Parts(Settings())
+    part.greedy(problem, log, math.inf)
+    part.neighbourhoods(problem, log, math.inf)
+    assert len(taken) == 2
+    assert taken[0] == taken[1]
+    assert log.refusals[0].startswith("lns")
+    assert log.details["neighbourhoods"] == 2
+
+
 @pytest.mark.parametrize("topple", [True, False])
 def test_where_there_was_no_time_for_a_first_plan_nothing_searches_for_a_cheaper_one(topple):
     problem = Problem(generate("multi", 6, seed=1)[0], PlanOptions(topple=topple))
