@@ -17,6 +17,7 @@ from typing import Any
 
 from smash.planners.astar.beam import BeamPass
 from smash.planners.astar.compiler import Compiler
+from smash.planners.astar.engine import Move
 from smash.planners.astar.task import make_setting
 from smash.planners.greedy.construct import NEVER, Construction
 from smash.planners.greedy.shorten import shorten
@@ -154,7 +155,7 @@ class NeighbourhoodSearch:
             self._draw.getrandbits(30),
             weight=self._draw.choice(WEIGHTS),
         )
-        moves = None
+        moves: list[Move] | None = None
         while not running.over and left(deadline) > 0:
             found = running.advance()
             moves = moves if found is None else found
