@@ -1,4 +1,4 @@
-"""Which neighbourhood is tried next: what has paid off, and in the long run each for the same effort."""
+"""Which neighbourhood is tried next: what has paid off; in the long run all get efforts of the same order."""
 
 from __future__ import annotations
 
