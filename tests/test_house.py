@@ -31,7 +31,7 @@ FLOORS = {
 """Room -> the rooms that it may import from, wherever in a module it does; `smash` is the door itself."""
 ORDERS = {
     "smash.planners": (
-        *("protocol", "registry", "compiling", "milp", "greedy", "precedence", "astar", "warm"),
+        *("protocol", "registry", "compiling", "milp", "greedy", "precedence", "astar", "neighbourhood", "warm"),
         *("layered", "flow", "former", "portfolio"),
     ),
     "smash.records": (

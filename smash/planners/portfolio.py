@@ -1,4 +1,4 @@
-"""`smash`, the default planner: greedy at once, then the exact methods, cheapest first, and beams, under one budget."""
+"""`smash`, the default planner: greedy, the exact methods, beams and neighbourhoods under one budget."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from typing import ClassVar
 
 from smash.planners.astar import BeamSearch, StateSearch, search_law_states
 from smash.planners.greedy import GreedyRun, end_of
+from smash.planners.neighbourhood import NeighbourhoodSearch
+from smash.planners.neighbourhood.course import steps_of
 from smash.planners.protocol import (
     HIGHS,
     SOLVERS,
@@ -26,7 +28,7 @@ from smash.planners.protocol import (
     settings_of,
 )
 from smash.problem.actions.registry import FAMILY
-from smash.problem.model import Instance, OnGoal, PlanOptions
+from smash.problem.model import Action, Instance, OnGoal, PlanOptions
 from smash.problem.problem import Problem
 
 GREEDY_SHARE = 0.1
@@ -42,8 +44,9 @@ PRECEDENCE_SHARE = 0.3
 """Share of the remaining budget for the precedence graph where the other exact methods have a chance too."""
 FEW_BLOCKS = 40
 """With more blocks than this the search over states and the layered model prove nothing more."""
-MANY_BLOCKS, PASSES_SHARE = 250, 0.5
-"""With more blocks a pass of the beam takes a minute: greedy passes get this share of the time left before it."""
+MANY_BLOCKS, PASSES_SHARE = 250, 0.2
+"""With more blocks a pass of the beam takes a minute: greedy passes get this share of the time left, and no beam comes
+before the neighbourhoods."""
 LARGE_SHARE = 0.6
 """Share of the remaining budget for the precedence graph with more blocks: the beam gets the rest."""
 LEAST_SHARE = 0.1
@@ -57,8 +60,12 @@ FIRST_SHARE, FIRST_SECONDS = 0.1, 1.0
 that leave out more."""
 WIDE_SEARCH_SHARE, LARGE_SEARCH_SHARE = 0.4, 0.2
 """The share of the search over states where a beam is likelier to help: more than `SMALL_BLOCKS`, `FEW_BLOCKS`."""
-BEAM_SHARE = 0.7
-"""Share of what the layered model leaves for the beam; the exact search has the rest, if it can use it."""
+BEAM_SHARE, LARGE_BEAM_SHARE = 0.5, 0.2
+"""Share of what neighbourhoods leave for the beam; the second with more than `MANY_BLOCKS`."""
+AGAIN_SHARE = 0.5
+"""Share of what the beam leaves for the exact search, if it can use it; neighbourhoods have the rest."""
+FIRST_NEIGHBOURHOODS, NEIGHBOURHOODS_SHARE = 0.15, 0.5
+"""Share of the time left for neighbourhoods of the best plan, before the exact search and before the last beams."""
 LAYERED_SHARE = 0.5
 """Share of the remaining budget for the layered model, where more comes after it."""
 
@@ -105,6 +112,7 @@ class SmashPlanner(MethodPlanner):
             Method("greedy to its end", plain, part.greedy),
             Method("greedy passes", plain, part.greedy_passes, FIRST_SHARE, FIRST_SECONDS),
             Method("first beam", plain, part.beams, FIRST_SHARE, FIRST_SECONDS),
+            Method("first neighbourhoods", plain, part.neighbourhoods, FIRST_NEIGHBOURHOODS),
             Method("search", plain, part.search, wide_share),
         )
         if blocks > MANY_BLOCKS:
@@ -116,10 +124,10 @@ class SmashPlanner(MethodPlanner):
             Method("the law's states", not_plain, search_law_states, SEARCH_SHARE),
             Method("layered", lambda problem: plain(problem) or modelled(problem), part.layered, LAYERED_SHARE),
             Method("layered to the end", lambda problem: not_plain(problem) or modelled(problem), part.layered),
-            Method("beam", plain, part.beams, lambda: part.beam_share(problem)),
-            Method("search to the end", plain, part.search),
-            Method("beam to the end", plain, part.beams),
-            Method("greedy passes to the end", plain, part.greedy_passes),
+            Method("neighbourhoods", plain, part.neighbourhoods, NEIGHBOURHOODS_SHARE),
+            Method("beam", plain, part.beams, BEAM_SHARE if blocks <= MANY_BLOCKS else LARGE_BEAM_SHARE),
+            Method("search again", plain, part.search, AGAIN_SHARE),
+            Method("neighbourhoods to the end", plain, part.neighbourhoods),
         )
 
 
@@ -145,6 +153,9 @@ class _Parts:
         self._search: StateSearch | None = None
         self._beam: BeamSearch | None = None
         self._greedy: GreedyRun | None = None
+        self._neighbourhoods: NeighbourhoodSearch | None = None
+        self._bettered: tuple[Action, ...] | None = None
+        """The plan whose neighbourhoods are searched."""
 
     @staticmethod
     def greedy_share(problem: Problem) -> float:
@@ -154,11 +165,6 @@ class _Parts:
     def precedence_share(self, problem: Problem) -> float:
         """Return the share of the time left that the precedence graph may take."""
         return PRECEDENCE_SHARE if len(problem.instance.blocks) <= FEW_BLOCKS else LARGE_SHARE
-
-    def beam_share(self, problem: Problem) -> float:
-        """Return the share of the time left for beams: all of it where the exact search over states can do no more."""
-        ended = self._search is not None and self._search.ended is not None
-        return 1.0 if ended or len(problem.instance.blocks) > MANY_BLOCKS else BEAM_SHARE
 
     def greedy(self, problem: Problem, log: SolveLog, until: float) -> None:
         """Plan as the greedy planner alone does: with the time for it no plan is dearer than its."""
@@ -218,6 +224,23 @@ class _Parts:
         if beam.ended == "proven":
             log.prove(min(beam.upper, cost if log.upper is None else log.upper), "beam")
         log.details |= {"beam": beam.ended, "beam_width": beam.width}
+
+    def neighbourhoods(self, problem: Problem, log: SolveLog, until: float) -> None:
+        """Plan parts of the best plan anew, as often as there is time."""
+        if log.best is None:  # there was no time for a greedy plan
+            return
+        if self._neighbourhoods is None:
+            self._neighbourhoods = NeighbourhoodSearch(problem, self.settings.seed)
+        search = self._neighbourhoods
+        while not log.settled:
+            if self._bettered is not log.best:  # others have found a better one, or the law has refused this one
+                search.take(steps_of(problem.numbered, log.best))
+                self._bettered = log.best
+            steps = search.run(until)
+            if steps is None:
+                break
+            self._bettered = log.best if log.offer(problem.numbered.actions(steps), "lns") else None
+        log.details["neighbourhoods"] = search.tried
 
     def precedence(self, problem: Problem, log: SolveLog, until: float) -> None:
         """Bound the cost by the precedence graph, and schedule its choices; greedy passes come first if none fits."""

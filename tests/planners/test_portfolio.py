@@ -108,7 +108,7 @@ def test_what_the_beam_found_and_proved_is_reported_at_once():
         instance, SolveOptions(topple=False), 4, lambda seconds, cost, plan: seen.append((cost, plan))
     )
     origins = {incumbent.origin for incumbent in result.incumbents}
-    assert origins <= {"greedy", "exact", "milp", "beam"}
+    assert origins <= {"greedy", "exact", "milp", "beam", "lns"}
     assert [cost for cost, _ in seen] == [incumbent.cost for incumbent in result.incumbents]
     assert all(Law(instance, PlanOptions(topple=False)).check(plan).accepted for _, plan in seen)
     assert result.lower_bound <= result.cost
@@ -162,10 +162,10 @@ def rows(problem):
 
 FIRST = [("greedy", 0.1, math.inf), ("light search", 1.0, 0.12)]
 LAST = [
-    ("beam", 0.7, math.inf),
-    ("search to the end", 1.0, math.inf),
-    ("beam to the end", 1.0, math.inf),
-    ("greedy passes to the end", 1.0, math.inf),
+    ("neighbourhoods", 0.5, math.inf),
+    ("beam", 0.5, math.inf),
+    ("search again", 0.5, math.inf),
+    ("neighbourhoods to the end", 1.0, math.inf),
 ]
 LAYERED = ("layered", 0.5, math.inf)
 
@@ -207,14 +207,15 @@ def test_with_more_blocks_beams_help_and_beyond_forty_the_layered_model_proves_n
         ("greedy to its end", 1.0, math.inf),
         ("greedy passes", 0.1, 1.0),
         ("first beam", 0.1, 1.0),
+        ("first neighbourhoods", 0.15, math.inf),
         ("search", search, math.inf),
     ]
     assert rows(sized(blocks)) == [*FIRST, *exact, *layered, *LAST]
 
 
-def test_beyond_250_blocks_greedy_passes_have_half_of_the_time_and_beams_the_rest():
-    exact = [("precedence", 0.6, math.inf), ("greedy to its end", 1.0, math.inf), ("greedy passes", 0.5, math.inf)]
-    assert rows(sized(251)) == [*FIRST, *exact, ("beam", 1.0, math.inf), *LAST[1:]]
+def test_beyond_250_blocks_greedy_passes_come_before_neighbourhoods_and_beams_have_less():
+    exact = [("precedence", 0.6, math.inf), ("greedy to its end", 1.0, math.inf), ("greedy passes", 0.2, math.inf)]
+    assert rows(sized(251)) == [*FIRST, *exact, LAST[0], ("beam", 0.2, math.inf), *LAST[2:]]
 
 
 @pytest.mark.parametrize(("blocks", "layered"), [(5, [("layered to the end", 1.0, math.inf)]), (41, [])])
@@ -223,22 +224,37 @@ def test_costs_are_left_to_the_search_over_the_laws_states_and_to_the_layered_mo
     assert rows(sized(blocks, is_plain=False)) == [*general, *layered]
 
 
-def test_the_beam_has_all_that_is_left_once_the_search_has_ended():
-    problem = sized(4)
-    methods = {method.name: method for method in SmashPlanner().methods(problem, Settings())}
-    log = SolveLog(problem)
-    methods["greedy"].run(problem, log, math.inf)
-    assert methods["beam"].share() == 0.7
-    methods["search"].run(problem, log, math.inf)
-    assert methods["beam"].share() == 1.0
-    assert log.details["search"] == "proven"
+def test_where_the_law_refuses_a_neighbour_the_best_plan_is_taken_up_again(monkeypatch):
+    taken, found = [], iter([[], None])
+
+    class Neighbours:
+        tried = 2
+
+        def __init__(self, problem, seed):
+            pass
+
+        def take(self, steps):
+            taken.append(steps)
+
+        def run(self, until):
+            return next(found)
+
+    monkeypatch.setattr("smash.planners.portfolio.NeighbourhoodSearch", Neighbours)
+    problem = Problem(generate("multi", 6, seed=1)[0], PlanOptions(topple=False))
+    log, part = SolveLog(problem), _Parts(Settings())
+    part.greedy(problem, log, math.inf)
+    part.neighbourhoods(problem, log, math.inf)
+    assert len(taken) == 2
+    assert taken[0] == taken[1]
+    assert log.refusals[0].startswith("lns")
+    assert log.details["neighbourhoods"] == 2
 
 
 @pytest.mark.parametrize("topple", [True, False])
 def test_where_there_was_no_time_for_a_first_plan_nothing_searches_for_a_cheaper_one(topple):
     problem = Problem(generate("multi", 6, seed=1)[0], PlanOptions(topple=topple))
     log, part = SolveLog(problem), _Parts(Settings())
-    for run in (part.light_search, part.search, part.beams, search_numbered_states):
+    for run in (part.light_search, part.search, part.beams, part.neighbourhoods, search_numbered_states):
         run(problem, log, perf_counter() + 10)
     assert log.best is None
     assert not log.details

@@ -2,7 +2,8 @@
 
 A layer holds states that are equally many moves away (direct moves not counted: `settle` makes them). The best by
 their estimate, the dearest to reach among equals, are expanded into the next layer; what cannot lead to a plan
-cheaper than the best known one is dropped. Where a pass never had to leave a state out, no cheaper plan exists.
+cheaper than the best known one is dropped. Where a pass never had to leave a state out, no cheaper plan exists. Passes
+differ by the weight of what is left to do: with more than 1 a layer prefers states nearer to the goal.
 """
 
 from __future__ import annotations
@@ -24,6 +25,8 @@ FIRST_WIDTH = 4
 FIRST_NODES = 1 << 10
 MOST_MEMORY = 1 << 29
 """The most memory for the states of two layers, and again for the ways back [bytes]."""
+WEIGHTS = (2, 3)
+"""How much half a unit of the bound on what is left counts beside half a unit spent, from pass to pass of one width."""
 TIE_BITS = 20
 """Of the number drawn for a state, which decides between those of equal estimate and cost."""
 
@@ -52,12 +55,13 @@ class BeamSearch:
         self.upper = upper
         self.ended: str | None = None
         self.width = FIRST_WIDTH
+        self._passes = 0
         self._seed = seed
         self._memory = memory
         self.patterns: Patterns | None = None
         self._options = options
         self._setting: Setting | None = None
-        self._pass: _Pass | None = None
+        self._pass: BeamPass | None = None
 
     def lower_upper(self, upper: int) -> None:
         """Take over the cost of a better plan that others have found."""
@@ -80,7 +84,7 @@ class BeamSearch:
                 return self._take(running, moves, deadline)
         return None
 
-    def _begin(self, deadline: float) -> _Pass | None:
+    def _begin(self, deadline: float) -> BeamPass | None:
         """Begin a pass, once the functions are compiled; None where they are not in time."""
         code = Compiler.code(deadline)
         if code is None:
@@ -89,10 +93,20 @@ class BeamSearch:
             self._setting = make_setting(self.problem, self._options)
         if self._memory is None:
             self._memory = min(free_memory(), MOST_MEMORY)
-        self._pass = _Pass(self._setting, code, self.upper, self.width, self._memory, self._seed, self.patterns)
+        self._pass = BeamPass(
+            self._setting,
+            code,
+            self.upper,
+            self.width,
+            self._memory,
+            self._seed,
+            patterns=self.patterns,
+            weight=WEIGHTS[self._passes % len(WEIGHTS)],
+        )
+        self._passes += 1
         return self._pass
 
-    def _finish(self, running: _Pass) -> None:
+    def _finish(self, running: BeamPass) -> None:
         """Prepare the next pass: wider where memory allows, in any case with other choices among equals."""
         self._pass = None
         if not running.truncated:
@@ -106,17 +120,28 @@ class BeamSearch:
         assert self._memory is not None
         return self._memory // (12 * max(1, self.upper))
 
-    def _take(self, running: _Pass, moves: list[Move], deadline: float) -> list[Step]:
+    def _take(self, running: BeamPass, moves: list[Move], deadline: float) -> list[Step]:
         """Return the steps of a plan found, shortened where that is possible."""
         steps = shorten(running.engine.steps(self.problem, moves), deadline)
         self.upper = min(self.upper, cost_of(steps))
         return steps
 
 
-class _Pass:
+class BeamPass:
     """One pass: a layer, the store that takes the next one, and the moves of all layers before.
 
+    Args:
+        setting: the problem's numbers.
+        code: the compiled functions.
+        upper: what plans have to be cheaper than.
+        width: most states of a layer.
+        memory: the most to take for states [bytes].
+        seed: for the choice among equals.
+        patterns: databases that bound the cost too.
+        weight: of the bound on what is left, in halves: 2 where it counts as much as what is spent.
+
     Attributes:
+        expanded: states expanded.
         over: whether there is no further layer.
         truncated: whether a state was left out that might have led to a better plan.
         cramped: whether that was for want of memory.
@@ -130,13 +155,17 @@ class _Pass:
         width: int,
         memory: int,
         seed: int,
+        *,
         patterns: Patterns | None = None,
+        weight: int = WEIGHTS[0],
     ) -> None:
         import numpy as np
 
+        self.expanded = 0
         self.engine = Engine(setting, code, compiled=True)
         self.over = self.truncated = self.cramped = False
         self._width = width
+        self._weight = weight
         self._most = most_nodes(setting.task.width * setting.task.blocks, memory)
         self._draw = np.random.default_rng(seed)
         self._store: Store = make_store(setting.task, True, min(FIRST_NODES, self._most), upper, upper, patterns)
@@ -193,6 +222,7 @@ class _Pass:
         self._history.append((store.parent[chosen], store.moved[chosen], store.code[chosen]))
         self._rows = store.states.reshape(int(store.shape[2]), -1)[chosen].reshape(-1)
         self._costs, self._estimates = store.cost[chosen].astype("i8"), store.estimate[chosen].astype("i8")
+        self.expanded += self._expanded
         self._expanded = 0
         store.counters[NODES] = 0
         store.table[:] = 0
@@ -210,7 +240,9 @@ class _Pass:
             return nodes
         self.truncated = True
         width = int(store.counters[UPPER]) + 1
-        key = store.estimate[nodes].astype("i8") * width + (width - store.cost[nodes])
+        spent = store.cost[nodes].astype("i8")
+        key = 2 * spent + self._weight * (store.estimate[nodes] - spent)
+        key = key * width + (width - spent)
         key = (key << TIE_BITS) + self._draw.integers(0, 1 << TIE_BITS, len(nodes))
         best = np.argpartition(key, self._width)[: self._width]
         return nodes[best[np.argsort(key[best])]]

@@ -32,6 +32,7 @@ class Construction:
         cap: the most blocks of one topple.
         due: per block, when it is expected to reach its goal: blocks put aside are stacked by it.
         noise: how much the choice of the next block is disturbed, 0 for none.
+        disturbed: how many choices are, the first ones.
         draw: the random source for `noise`.
     """
 
@@ -44,6 +45,7 @@ class Construction:
         cap: int,
         due: Sequence[float],
         noise: float = 0.0,
+        disturbed: float = math.inf,
         draw: random.Random | None = None,
     ) -> None:
         self.target = target
@@ -51,6 +53,7 @@ class Construction:
         self.topple = topple
         self.cap = cap
         self.noise = noise
+        self._to_disturb = disturbed
         self.draw = draw or random.Random(0)
         self.goal_of = [ON_TABLE] * problem.blocks
         for location, pile in enumerate(target):
@@ -207,6 +210,8 @@ class Construction:
     def _next_goal(self) -> int | None:
         """Return the unfinished location whose next block takes the least work, or None where all are built."""
         best, least = None, (math.inf, math.inf)
+        noise = self.noise if self._to_disturb > 0 else 0.0
+        self._to_disturb -= 1
         for goal, target in enumerate(self.target):
             if self.done[goal] == len(target):
                 continue
@@ -215,8 +220,8 @@ class Construction:
             work = self._price(goal, len(self.piles[goal]) - self.done[goal])
             if source not in (ON_TABLE, goal):
                 work += self._price(source, len(self.piles[source]) - 1 - self.level[block])
-            if self.noise:
-                work *= 1 + self.noise * self.draw.random()
+            if noise:
+                work *= 1 + noise * self.draw.random()
             if (work, self.due[block]) < least:
                 best, least = goal, (work, self.due[block])
         return best

@@ -5,6 +5,7 @@ from time import perf_counter
 
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
 
 from smash.planners.astar import BeamSearch, beam
 from smash.planners.astar.task import make_setting
@@ -82,6 +83,40 @@ def test_equal_seeds_find_equal_plans():
     assert first
 
 
+@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
+@given(instances(max_blocks=4, kinds=EVERY_KIND), plan_options(), st.sampled_from([2, 3, 4]))
+def test_the_weight_of_a_pass_that_leaves_nothing_out_does_not_matter(machine_code, instance, options, weight):
+    best = optimal_cost(instance, options)
+    assume(best)
+    problem = Numbered.of(instance)
+    running = beam.BeamPass(
+        make_setting(problem, options), machine_code, best + LOOSE, 10**6, beam.MOST_MEMORY, 0, weight=weight
+    )
+    costs = []
+    while not running.over:
+        moves = running.advance()
+        if moves is not None:
+            costs.append(cost_of(running.engine.steps(problem, moves)))
+    assert costs[-1] == best
+    assert not running.truncated
+    assert running.expanded > 0
+
+
+def test_passes_take_the_weights_in_turn(monkeypatch):
+    weights = []
+    made = beam.BeamPass.__init__
+
+    def noted(self, *given, weight, **named):
+        weights.append(weight)
+        made(self, *given, weight=weight, **named)
+
+    monkeypatch.setattr(beam.BeamPass, "__init__", noted)
+    problem = Numbered.of(generate("multi", 9, buffers=0, seed=4)[0])
+    plans_of(BeamSearch(problem, PlanOptions(topple=False), 80), most_width=16)
+    assert weights == [beam.WEIGHTS[index % len(beam.WEIGHTS)] for index in range(len(weights))]
+    assert len(set(weights)) == len(beam.WEIGHTS)
+
+
 def test_a_pass_that_left_a_state_out_proves_nothing():
     problem = Numbered.of(generate("multi", 9, buffers=0, seed=4)[0])
     search = BeamSearch(problem, PlanOptions(topple=False), 80)
@@ -146,7 +181,7 @@ def test_the_default_betters_the_greedy_plan_of_fifteen_blocks_without_buffers()
 def test_a_state_that_was_broken_off_where_memory_ends_is_not_gone_on_with_in_the_next_layer(machine_code):
     problem = Numbered.of(generate("multi", 9, seed=4)[0])
     setting = make_setting(problem, PlanOptions())
-    running = beam._Pass(setting, machine_code, 80, 4, beam.MOST_MEMORY, 0)
+    running = beam.BeamPass(setting, machine_code, 80, 4, beam.MOST_MEMORY, 0)
     running.advance()
     engine = running.engine
 
