@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +19,9 @@ from smash.planners.milp.solvers import highs
 from smash.planners.precedence.graph import Floats
 from smash.planners.precedence.hitting_set import MAXSAT_MODULE
 from smash.problem.extras import is_there
+
+if TYPE_CHECKING:
+    from smash.planners.precedence.maxsat import MaxSat
 
 Clause = tuple[int, ...]
 
@@ -67,7 +71,7 @@ class Cheapest:
         self._threads = threads
         self._bound = 0
         self._sent = 0
-        self._core_guided = None
+        self._core_guided: MaxSat | None = None
         self._unit = math.gcd(*clauses.costs) or 1
         if is_there(MAXSAT_MODULE) if maxsat is None else maxsat:
             from smash.planners.precedence.maxsat import MaxSat
