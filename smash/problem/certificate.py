@@ -5,7 +5,9 @@ comes before the last placement of c, that of c before that of d, that of d befo
 once, straight to its place, its removal would be its placement, and each would come before itself. So at
 least one of them is toppled at its first removal or put aside: the cycle is *hit*. What hits all cycles for
 the least cost is bounded from below by weights on the cycles (linear programming duality), or by a tree of
-cases with weights at its leaves. The checker knows the instance and the law's actions, and nothing of the planner.
+cases with weights at its leaves. A *rank* is a set of blocks of which no more than so many can move directly without
+a cycle; the checker counts how many, and the others have to be freed. The checker knows the instance and the law's
+actions, and nothing of the planner.
 
 Where the hand holds a block at the start, every plan begins with a place: there is a proof for one location of each
 class of equal ones, and the least of their bounds, and 1 for the place, is the bound.
@@ -16,9 +18,9 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal, cast
+from typing import Literal, NamedTuple, cast
 
 import msgspec
 
@@ -33,12 +35,14 @@ from smash.problem.views.posed import posed
 CERTIFICATE_FORMAT = "smash-certificate/1"
 ONE = 1_000_000
 """Weights are whole millionths of an action."""
+MOST_OF_A_RANK = 16
+"""Blocks of one rank: the checker may have to look at each of its subsets."""
 PLACE_COST = 1
 """Of the first action of a plan whose hand is full at the start."""
 
 
 class Leaf(msgspec.Struct, forbid_unknown_fields=True, tag_field="kind", tag="weights"):
-    """A case closed by weights: `[number of the cycle, millionths]` each."""
+    """A case closed by weights: `[number of the cycle, millionths]` each; ranks are numbered on after the cycles."""
 
     weights: list[tuple[int, int]]
 
@@ -58,6 +62,7 @@ class FirstPlace(msgspec.Struct, forbid_unknown_fields=True):
     bound: int
     cycles: list[list[str]]
     proof: Leaf | Cases
+    ranks: list[list[str]] = msgspec.field(default_factory=list)
 
 
 class Certificate(msgspec.Struct, forbid_unknown_fields=True):
@@ -75,6 +80,7 @@ class Certificate(msgspec.Struct, forbid_unknown_fields=True):
     proof: Leaf | Cases
     note: str = ""
     first_places: list[FirstPlace] = msgspec.field(default_factory=list)
+    ranks: list[list[str]] = msgspec.field(default_factory=list)
 
 
 def read_certificate(path: str | os.PathLike[str]) -> Certificate:
@@ -92,6 +98,9 @@ def certificate_text(certificate: Certificate) -> str:
     document = msgspec.to_builtins(certificate)
     if not certificate.first_places:
         del document["first_places"]
+    for part in (document, *document.get("first_places", ())):
+        if not part["ranks"]:
+            del part["ranks"]
     return json.dumps(document) + "\n"
 
 
@@ -145,7 +154,7 @@ def proven_bound(instance: Instance, options: PlanOptions, certificate: Certific
     if instance.hand is None:
         if certificate.first_places:
             raise RefusedCertificate("it has first places, and the hand is empty at the start")
-        bound = _proven(instance, options, certificate.cycles, certificate.proof)
+        bound = _proven(instance, options, certificate)
     else:
         bound = _proven_first_places(instance, options, certificate)
     if bound != certificate.bound:
@@ -164,20 +173,33 @@ def _proven_first_places(instance: Instance, options: PlanOptions, certificate: 
     places = [first.place for first in certificate.first_places]
     if sorted(places) != sorted(rests) or not places:
         raise RefusedCertificate(f"it is about the first places {sorted(places)}, not {sorted(rests)}")
-    if certificate.cycles or certificate.proof != Leaf([]):
+    if certificate.cycles or certificate.ranks or certificate.proof != Leaf([]):
         raise RefusedCertificate("it has a proof beside those of its first places")
     for first in certificate.first_places:
-        bound = _proven(rests[first.place], options, first.cycles, first.proof)
+        bound = _proven(rests[first.place], options, first)
         if bound != first.bound:
             raise RefusedCertificate(f"first place {first.place!r}: the bound is {bound}, not {first.bound}")
     return PLACE_COST + min(first.bound for first in certificate.first_places)
 
 
-def _proven(instance: Instance, options: PlanOptions, cycles: Sequence[list[str]], proof: Leaf | Cases) -> int:
+def _proven(instance: Instance, options: PlanOptions, stated: Certificate | FirstPlace) -> int:
     checker = _Checker(posed(instance, falls=options.topple), options)
-    for number, cycle in enumerate(cycles):
+    for number, cycle in enumerate(stated.cycles):
         checker.add_cycle(number, cycle)
-    return checker.base + checker.least(proof, frozenset(), frozenset())
+    for number, rank in enumerate(stated.ranks):
+        checker.add_rank(number, rank)
+    return checker.base + checker.least(stated.proof, frozenset(), frozenset())
+
+
+class _Row(NamedTuple):
+    """So many blocks have to be freed, and how many of them each choice frees."""
+
+    needed: int
+    frees: dict[_Key, int]
+
+    def left(self, taken: frozenset[_Key]) -> int:
+        """Return how many are still to be freed where some choices are taken."""
+        return self.needed - sum(count for key, count in self.frees.items() if key in taken)
 
 
 class _Checker:
@@ -218,7 +240,7 @@ class _Checker:
                 for block in self.placed.intersection(pile):
                     self.choices["aside", block] = _Choice(frozenset({block}), 2)
         self.unit = math.gcd(*(choice.cost for choice in self.choices.values())) if self.choices else 1
-        self.hit_by: list[list[_Key]] = []
+        self.rows: list[_Row] = []
 
     def add_cycle(self, number: int, cycle: list[str]) -> None:
         """Check one cycle and note what can hit it."""
@@ -229,7 +251,18 @@ class _Checker:
                 if not self._precedes(before, after):
                     text = f"the removal of {before!r} need not come before the placement of {after!r}"
                     raise RefusedCertificate(f"cycle {number}: {text}")
-        self.hit_by.append([key for key, choice in self.choices.items() if not choice.blocks.isdisjoint(cycle)])
+        self.rows.append(_Row(1, {key: 1 for key, choice in self.choices.items() if choice.blocks & set(cycle)}))
+
+    def add_rank(self, number: int, blocks: list[str]) -> None:
+        """Count how many of a set of blocks can move directly, and note what frees the others."""
+        members = frozenset(blocks)
+        if not members <= self.placed & self.leaves or not 0 < len(members) == len(blocks) <= MOST_OF_A_RANK:
+            text = f"{blocks} are not up to {MOST_OF_A_RANK} blocks that leave their piles and are placed"
+            raise RefusedCertificate(f"rank {number}: {text}")
+        leads = [sum(self._precedes(one, other) << at for at, other in enumerate(blocks)) for one in blocks]
+        needed = len(blocks) - _most_without_cycle(leads)
+        frees = {key: len(choice.blocks & members) for key, choice in self.choices.items()}
+        self.rows.append(_Row(needed, {key: min(count, needed) for key, count in frees.items() if count and needed}))
 
     def _precedes(self, before: str, after: str) -> bool:
         """Whether every plan removes `before` for the first time before it places `after` for the last time."""
@@ -258,16 +291,55 @@ class _Checker:
         total = ONE * sum(self.choices[key].cost for key in taken)
         load: dict[_Key, int] = {}
         for number, weight in proof.weights:
-            if not 0 <= number < len(self.hit_by) or weight < 0:
+            if not 0 <= number < len(self.rows) or weight < 0:
                 raise RefusedCertificate(f"a leaf gives cycle {number} the weight {weight}")
-            if taken.isdisjoint(self.hit_by[number]):
-                total += weight
-                for key in self.hit_by[number]:
-                    load[key] = load.get(key, 0) + weight
+            row = self.rows[number]
+            left = row.left(taken)
+            if left > 0:
+                total += weight * left
+                for key, count in row.frees.items():
+                    load[key] = load.get(key, 0) + weight * count
         for key, weight in load.items():
-            if key not in banned and weight > ONE * self.choices[key].cost:
+            if key not in taken and key not in banned and weight > ONE * self.choices[key].cost:
                 raise RefusedCertificate(f"the cycles hit by {list(key)} weigh more than it costs")
         return -(-total // (ONE * self.unit)) * self.unit
+
+
+def _most_without_cycle(leads: list[int]) -> int:
+    """Return how many vertices of a graph can be kept without a cycle.
+
+    Args:
+        leads: per vertex those that it leads to, as bits.
+    """
+    known = {0: 0}
+
+    def most(kept: int) -> int:
+        if kept not in known:
+            cycle = _cycle_of(leads, kept)
+            left = [kept & ~(1 << vertex) for vertex in cycle]
+            known[kept] = max(map(most, left)) if cycle else kept.bit_count()
+        return known[kept]
+
+    return most((1 << len(leads)) - 1)
+
+
+def _cycle_of(leads: list[int], kept: int) -> list[int]:
+    """Return the vertices of a cycle among those of `kept`, of one or two where there is one; empty where none is."""
+    while True:  # what leads to none of them is on no cycle
+        ends = sum(1 << at for at, following in enumerate(leads) if kept >> at & 1 and not following & kept)
+        if not ends:
+            break
+        kept &= ~ends
+    members = [at for at in range(len(leads)) if kept >> at & 1]
+    for one in members:
+        for other in members:
+            if leads[one] >> other & 1 and leads[other] >> one & 1:
+                return [one] if one == other else [one, other]
+    way: list[int] = []
+    while members and (not way or members[0] not in way):
+        way.append(members[0])
+        members = [at for at in range(len(leads)) if leads[way[-1]] & kept & 1 << at]
+    return way[way.index(members[0]) :] if members else []
 
 
 def _wrong_positions(instance: Instance, piles: dict[str, tuple[str, ...]]) -> set[str]:

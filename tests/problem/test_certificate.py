@@ -133,6 +133,67 @@ def test_a_changed_certificate_is_refused(changes, words):
         proven_bound(move_over(), PlanOptions(topple=False), msgspec.structs.replace(good(), **changes))
 
 
+def three_in_turn():
+    """Return three blocks, p, q and r, each of which has to leave before the two others can be placed."""
+    return make_instance(
+        {"s1": "up", "s2": "vq", "s3": "zwr", "s4": ""},
+        StacksGoal({"s1": ("z", "q"), "s2": ("w", "p"), "s4": ("u", "v", "r")}),
+        name="three in turn",
+        blocks="upvqzwr",
+        buffers=2,
+    )
+
+
+def with_ranks(*ranks, proof=None, bound=18):
+    """Return a certificate for `three_in_turn` without topple by ranks alone."""
+    proof = proof or Leaf([(0, 2 * ONE)])
+    return Certificate("smash-certificate/1", "three in turn", False, None, bound, [], proof, ranks=list(ranks))
+
+
+def test_of_three_blocks_that_wait_for_each_other_two_are_put_aside():
+    options = PlanOptions(topple=False)
+    stated = with_ranks(["p", "q", "r"])
+    read = msgspec.json.decode(certificate_text(stated), type=Certificate)
+    assert read == stated
+    assert proven_bound(three_in_turn(), options, read) == 18
+    halves = Leaf([(number, ONE) for number in range(3)])
+    pairs = with_ranks(["p", "q"], ["q", "r"], ["p", "r"], proof=halves)  # three, and costs are even
+    assert proven_bound(three_in_turn(), options, pairs) == 18
+    cases = Cases(["aside", "p"], Leaf([(0, 2 * ONE)]), Leaf([(0, 2 * ONE)]))
+    assert proven_bound(three_in_turn(), options, with_ranks(["p", "q", "r"], proof=cases)) == 18
+    assert "ranks" not in certificate_text(with_ranks())
+
+
+@pytest.mark.parametrize(
+    ("rank", "words"),
+    [
+        (["p", "p"], "rank 0"),
+        (["p", "nobody"], "rank 0"),
+        ([], "rank 0"),
+        (["u", "p"], "its proof gives 14"),
+        (["p", "q"], "its proof gives 16"),
+    ],
+)
+def test_a_rank_says_no_more_than_is_so(rank, words):
+    with pytest.raises(RefusedCertificate, match=words):
+        proven_bound(three_in_turn(), PlanOptions(topple=False), with_ranks(rank))
+
+
+@settings(max_examples=60, deadline=None)
+@given(instances(max_blocks=4), plan_options())
+def test_no_rank_that_the_checker_accepts_is_above_the_optimum(instance, options):
+    best = optimal_cost(instance, options)
+    if best is None:
+        return
+    draw = random.Random(repr(instance))
+    for _ in range(10):
+        ranks = [draw.sample(instance.blocks, draw.randint(1, len(instance.blocks))) for _ in range(2)]
+        ranks = [rank for rank in ranks if accepted(instance, options, [], [], [rank]) is not None]
+        weights = [(number, draw.choice([1, 2]) * ONE) for number in range(len(ranks))]
+        bound = accepted(instance, options, [], weights, ranks)
+        assert bound is None or bound <= best
+
+
 def test_cases_may_be_used_instead_of_weights():
     impossible = Leaf([(0, 100 * ONE)])
     certificate = good()
@@ -156,11 +217,12 @@ def test_no_certificate_that_the_checker_accepts_is_above_the_optimum(instance, 
         assert bound is None or bound <= best
 
 
-def accepted(instance, options, cycles, weights):
+def accepted(instance, options, cycles, weights, ranks=()):
     """Return the bound of a certificate, or None where the checker refuses it; 0 is a bound."""
     certificate = Certificate(
         "smash-certificate/1", instance.name, options.topple, options.max_topple, -1, cycles, Leaf(weights)
     )
+    certificate.ranks = list(ranks)
     with pytest.raises(RefusedCertificate) as refusal:
         proven_bound(instance, options, certificate)
     words = str(refusal.value)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 
-from smash.planners.precedence.emptying import emptying_bound, piles_decide
+from smash.planners.precedence.emptying import Places, emptying_bound, places_decide
 from smash.planners.precedence.graph import PrecedenceGraph, build_graph
 from smash.planners.precedence.hitting_set import HittingSet, HittingSetSolver
 from smash.planners.precedence.schedule import Scheduler, chosen_of
@@ -18,8 +18,10 @@ ORIGIN = "precedence"
 """The `bound_origin` of the bounds proven here."""
 SHORT = 0.2
 """Seconds that any schedule may take."""
-EMPTIED_SECONDS = 1.0
-"""For the choices that go with the piles that are to be emptied."""
+CYCLES_SHARE = 0.5
+"""Of the time, for the cycles alone where it also matters which piles are emptied and which tower is built where."""
+PLACES_SHARE, PLACES_SECONDS = 0.05, 1.0
+"""Of the time left, and the least, for the choices that go with the piles and places of a solution."""
 RESERVE = 3.0
 """How often the time of the schedule before is kept for the last one."""
 
@@ -75,12 +77,23 @@ def precedence_bound(
     tell(graph.base_cost)
     solver = HittingSetSolver(graph, threads, lambda bound: tell(graph.base_cost + bound))
     plans.offer(solver.start(deadline), 0.1)
-    found = solver.solve(deadline - plans.reserve, plans.offer)
+    placing = places_decide(problem)
+    until = perf_counter() + CYCLES_SHARE * (deadline - perf_counter()) if placing else deadline - plans.reserve
+    found = solver.solve(until, plans.offer)
     plans.offer(found.chosen, 1.0)
     relaxed = graph.base_cost + sum(graph.choices[choice].cost for choice in found.chosen)
     bound = graph.base_cost + found.bound
-    if (plans.best is None or len(plans.best) > bound) and piles_decide(problem):
-        joined = emptying_bound(problem, graph, found.cycles, deadline, tell, threads, plans.offer_emptied)
+    if (plans.best is None or len(plans.best) > bound) and placing:
+        known = bound
+        joined = emptying_bound(
+            problem,
+            graph,
+            found.cycles,
+            deadline,
+            lambda better: tell(better) if better > known else None,
+            threads,
+            plans.offer_places,
+        )
         bound = max(bound, joined)
     return PrecedenceBound(bound, relaxed, plans.best, graph, found)
 
@@ -111,11 +124,16 @@ class _Plans:
         """Seconds to keep for the last schedule, at most a tenth of the time left."""
         return min(RESERVE * self._took, 0.1 * max(0.0, self.deadline - perf_counter()))
 
-    def offer_emptied(self, kept: dict[str, int]) -> None:
-        """Schedule the cheapest choices with which no more blocks stay than `kept` says, per location."""
-        graph = build_graph(self.problem, demands_of(self.problem.posed, kept))
-        found = HittingSetSolver(graph).solve(min(self.deadline, perf_counter() + EMPTIED_SECONDS))
-        self._schedule(graph, found.chosen, 0.1)
+    def offer_places(self, places: Places) -> int | None:
+        """Schedule the cheapest choices that build and leave blocks where it is said; return the best plan's cost."""
+        graph = build_graph(self.problem, demands_of(self.problem.posed, places.kept, places.at))
+        solver = HittingSetSolver(graph)
+        now = perf_counter()
+        seconds = max(PLACES_SECONDS, PLACES_SHARE * (self.deadline - now))
+        found = solver.solve(min(self.deadline, now + seconds))
+        if self.best is None or graph.base_cost + solver.cost(found.chosen) < len(self.best):
+            self._schedule(graph, found.chosen, 0.1)
+        return None if self.best is None else len(self.best)
 
     def offer(self, chosen: set[int], share: float = 0.0) -> None:
         """Schedule a choice, within a `share` of the time left; with share 0 only if that is quick enough."""

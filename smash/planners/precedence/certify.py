@@ -1,5 +1,7 @@
 """Writing certificates: cycles with dual weights, in a tree of cases where the relaxation leaves a gap.
 
+Where the choices are blocks and the cycles leave a gap, rank inequalities (`ranks.py`) come before the cases.
+
 The weights are the LP's dual values, scaled down until they are feasible in whole millionths, so that what is
 written is exact whatever the solver's tolerances were. Checked by `smash.problem.certificate`.
 """
@@ -8,15 +10,26 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from time import perf_counter
+from typing import NamedTuple
 
 import highspy
 import numpy as np
 
+from smash.planners.precedence.compiled import Kernels
+from smash.planners.precedence.compiler import GraphCompiler
 from smash.planners.precedence.cycles import CycleFinder
 from smash.planners.precedence.dive import dive
 from smash.planners.precedence.graph import Floats, PrecedenceGraph, build_graph
+from smash.planners.precedence.hitting_set import LONGEST, MOST_COMPILE_SECONDS, SLACK, STALL, STALL_ROUNDS, TRIES
+from smash.planners.precedence.ranks import MOST_VERTICES, RankFinder
+from smash.planners.precedence.turns import turn_graph
 from smash.problem.certificate import ONE, PLACE_COST, Cases, Certificate, FirstPlace, Leaf, first_problems
 from smash.problem.problem import Problem
+
+MOST_ROUNDS = 200
+"""Of rank inequalities."""
+COMPILE_SHARE = 0.2
+"""Of the time, to wait for the kernels that find them."""
 
 Fixed = dict[int, int]
 """Choices that a case fixes: 1 taken, 0 not."""
@@ -30,17 +43,17 @@ def certify(problem: Problem, deadline: float, known: Iterable[tuple[int, ...]] 
         deadline: when to stop, in seconds of `time.perf_counter`; the certificate then proves what it can.
         known: cycles found before (`HittingSet.cycles`), to start from; none of a full hand's.
     """
-    cycles: list[list[str]] = []
-    proof: Leaf | Cases = Leaf([])
+    part = _Part([], [], Leaf([]), 0)
     firsts: list[FirstPlace] = []
     if problem.instance.hand is None:
-        cycles, proof, bound = _proof(problem, deadline, known)
+        part = _proof(problem, deadline, known)
+        bound = part.bound
     else:
         rests = first_problems(problem.instance, problem.options)
         for number, (place, rest) in enumerate(rests.items()):
             until = perf_counter() + max(0.0, deadline - perf_counter()) / (len(rests) - number)
-            each, part, least = _proof(Problem(rest, problem.options), until, ())
-            firsts.append(FirstPlace(place, least, each, part))
+            of_rest = _proof(Problem(rest, problem.options), until, ())
+            firsts.append(FirstPlace(place, of_rest.bound, of_rest.cycles, of_rest.proof, of_rest.ranks))
         bound = PLACE_COST + min(first.bound for first in firsts)
     return Certificate(
         format="smash-certificate/1",
@@ -48,36 +61,52 @@ def certify(problem: Problem, deadline: float, known: Iterable[tuple[int, ...]] 
         topple=problem.options.topple,
         max_topple=problem.options.max_topple,
         bound=bound,
-        cycles=cycles,
-        proof=proof,
+        cycles=part.cycles,
+        proof=part.proof,
         note="the time ran out before more was proven" if perf_counter() > deadline else "",
         first_places=firsts,
+        ranks=part.ranks,
     )
 
 
-def _proof(
-    problem: Problem, deadline: float, known: Iterable[tuple[int, ...]]
-) -> tuple[list[list[str]], Leaf | Cases, int]:
-    """Return the cycles that a proof for an empty hand uses, the proof, and the bound."""
+class _Part(NamedTuple):
+    """A proof for an empty hand: the cycles and ranks that it uses, the proof, and its bound."""
+
+    cycles: list[list[str]]
+    ranks: list[list[str]]
+    proof: Leaf | Cases
+    bound: int
+
+
+def _proof(problem: Problem, deadline: float, known: Iterable[tuple[int, ...]]) -> _Part:
+    """Return a proof for an empty hand."""
     prover = _Prover(build_graph(problem), deadline)
     for cycle in known:
         prover.add(cycle)
     proof, bound = prover.prove()
     graph = prover.graph
-    used = sorted(_rows_of(proof))
-    rank = {row: position for position, row in enumerate(used)}
-    cycles = [[graph.blocks[block] for block in prover.cycles[row]] for row in used]
-    return cycles, _renumbered(proof, rank), graph.base_cost + bound
+    used = sorted(_rows_of(proof), key=lambda row: (row in prover.ranks, row))
+    number = {row: position for position, row in enumerate(used)}
+    cycles = [[graph.blocks[block] for block in prover.cycles[row]] for row in used if row not in prover.ranks]
+    ranks = [prover.ranks[row] for row in used if row in prover.ranks]
+    return _Part(cycles, ranks, _renumbered(proof, number), graph.base_cost + bound)
 
 
 class _Prover:
-    """Branch and bound over the choices with exact bounds; cuts found in one case serve all."""
+    """Branch and bound over the choices with exact bounds; cuts found in one case serve all.
+
+    Attributes:
+        cycles: by row, blocks of back edges.
+        ranks: of the rows that are rank inequalities, the blocks.
+    """
 
     def __init__(self, graph: PrecedenceGraph, deadline: float) -> None:
         self.graph = graph
         self.deadline = deadline
-        self.cycles: list[tuple[int, ...]] = []
+        self.cycles: dict[int, tuple[int, ...]] = {}
+        self.ranks: dict[int, list[str]] = {}
         self._rows: list[list[int]] = []
+        self._needed: list[int] = []
         self._known: set[frozenset[int]] = set()
         self._finder = CycleFinder(graph)
         self._costs = graph.costs
@@ -97,8 +126,19 @@ class _Prover:
         if row in self._known:
             return False
         self._known.add(row)
-        self.cycles.append(cycle)
+        self.cycles[len(self._rows)] = cycle
         self._rows.append(sorted(row))
+        self._needed.append(1)
+        return True
+
+    def _add_rank(self, row: frozenset[int], needed: int) -> bool:
+        """Take up a rank inequality; whether it was new."""
+        if row in self._known:
+            return False
+        self._known.add(row)
+        self.ranks[len(self._rows)] = [self._blocks_of(choice)[0] for choice in sorted(row)]
+        self._rows.append(sorted(row))
+        self._needed.append(needed)
         return True
 
     def prove(self) -> tuple[Leaf | Cases, int]:
@@ -110,6 +150,8 @@ class _Prover:
         root, values, bound = self._leaf({})
         if values is not None:
             best = min(best, int(sum(graph.choices[choice].cost for choice in dive(graph, values))))
+        if bound < best and values is not None:
+            root, values, bound = self._strengthen(root, values, bound, best)
         if bound >= best or values is None:
             return root, bound
         proof: Leaf | Cases = root
@@ -120,6 +162,39 @@ class _Prover:
                 break
             proof, proven = deeper, reached
         return proof, proven
+
+    def _strengthen(self, root: Leaf, values: Floats, bound: int, best: int) -> tuple[Leaf, Floats | None, int]:
+        """Add rank inequalities to the relaxation of the root while they raise it; return what `_leaf` does."""
+        turns = turn_graph(self.graph)
+        kernels = None if turns is None or not len(turns.free) else self._kernels()
+        if turns is None or kernels is None:
+            return root, values, bound
+        finder = RankFinder(turns, kernels)
+        heights = [float(self._costs @ values)]
+        for round_ in range(MOST_ROUNDS):
+            tight = [
+                frozenset(row)
+                for row, needed in zip(self._rows, self._needed, strict=True)
+                if len(row) <= LONGEST and float(values[row].sum()) - needed < SLACK
+            ]
+            ranks = finder.violated(values, tight, MOST_VERTICES, 0.5 + round_ % TRIES, self.deadline)
+            if not sum([self._add_rank(row, needed) for row, needed in ranks]):
+                break
+            leaf, reached, raised = self._leaf({})
+            if raised > bound:
+                root, bound = leaf, raised
+            if bound >= best or reached is None:
+                return root, reached, bound
+            values = reached
+            heights.append(float(self._costs @ values))
+            if len(heights) > STALL_ROUNDS and heights[-1] < (1.0 + STALL) * heights[-1 - STALL_ROUNDS]:
+                break
+        return root, values, bound
+
+    def _kernels(self) -> Kernels | None:
+        """Return the compiled kernels if they are there in a share of the time."""
+        now = perf_counter()
+        return GraphCompiler.code(now + min(MOST_COMPILE_SECONDS, COMPILE_SHARE * (self.deadline - now)))
 
     def _branch(self, fixed: Fixed, target: int) -> tuple[Leaf | Cases, int]:
         """Return a proof for the case `fixed` and its bound, below `target` if time ran out or that is not true."""
@@ -183,26 +258,33 @@ class _Prover:
     def _weights(self, duals: Floats, fixed: Fixed) -> tuple[Leaf, int]:
         """Round dual values to exact weights of the case; return them and the bound that they give."""
         taken = {choice for choice, value in fixed.items() if value}
-        rows = [row for row, dual in enumerate(duals) if dual > 1e-9 and taken.isdisjoint(self._rows[row])]
+        needed = [needed - len(taken.intersection(row)) for row, needed in zip(self._rows, self._needed, strict=True)]
+        rows = [row for row, dual in enumerate(duals) if dual > 1e-9 and needed[row] > 0]
         load = np.zeros(len(self._costs))
         for row in rows:
             load[self._rows[row]] += duals[row]
-        for choice, value in fixed.items():
-            if value == 0:
-                load[choice] = 0.0
+        load[list(fixed)] = 0.0
         excess = float((load / self._costs).max(initial=0.0))
         scale = 1.0 / (max(excess, 1.0) * (1.0 + 1e-9))
         weights = [(row, int(duals[row] * scale * ONE)) for row in rows]
         leaf = Leaf([(row, weight) for row, weight in weights if weight])
-        total = ONE * int(self._costs[list(taken)].sum()) + sum(weight for _, weight in leaf.weights)
+        total = ONE * int(self._costs[list(taken)].sum()) + sum(weight * needed[row] for row, weight in leaf.weights)
         return leaf, -(-total // (ONE * self._unit)) * self._unit
 
     def _impossible(self, fixed: Fixed) -> tuple[Leaf, int]:
         """Close a case that bans all that hits some cycle: no weight on that cycle is too much."""
         banned = {choice for choice, value in fixed.items() if not value}
-        row = next(row for row, choices in enumerate(self._rows) if banned.issuperset(choices))
+        while (row := self._banned_row(banned)) is None:  # the ranks alone say so: a cycle that does is there too
+            allowed = np.ones(len(self._costs))
+            allowed[list(banned)] = 0.0
+            for cycle in self._finder.violated(self.graph.freedom(allowed), 0.5):
+                self.add(cycle)
         bound = int(self._costs.sum()) + self._unit
         return Leaf([(row, ONE * bound)]), bound
+
+    def _banned_row(self, banned: set[int]) -> int | None:
+        """Return a cycle that nothing but banned choices hits, None where none is known."""
+        return next((row for row in self.cycles if banned.issuperset(self._rows[row])), None)
 
     def _send(self) -> None:
         fresh = self._rows[self._sent :]
@@ -212,7 +294,8 @@ class _Prover:
         columns = np.array([choice for row in fresh for choice in row], dtype=np.int32)
         count = len(fresh)
         infinity = np.full(count, highspy.kHighsInf)
-        self._model.addRows(count, np.ones(count), infinity, len(columns), starts, columns, np.ones(len(columns)))
+        needed = np.array(self._needed[self._sent :], dtype=float)
+        self._model.addRows(count, needed, infinity, len(columns), starts, columns, np.ones(len(columns)))
         self._sent = len(self._rows)
 
 

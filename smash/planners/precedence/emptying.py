@@ -1,30 +1,49 @@
-"""Which piles to empty: a bound for `on` goals where locations are few, joined with the hitting set in one model.
+"""Which piles to empty and which tower to build where: a bound for `on` goals where locations are few.
 
-Each block that has to be at a bottom, and is not or leaves its own, needs a location that was empty from the start or
-whose lowest block leaves. Which piles those are is chosen, together with what hits the cycles: per block b
+A tower that is begun anew stands at some location at the end, and all that leaves this location has left it before the
+tower's base is placed for good; at the bottom of a location there is one base. The towers' places are chosen, together
+with how deep piles are taken off and with what hits the cycles, as clauses over
 
-- `removed[b]`: b leaves its start pile; so does all that stood on it;
-- `moved[b]` (2 actions): b is picked and placed; what the goal gives a place must be if it is removed;
-- `fallen[b]`: a topple is b's first removal, one of the `topples` (1 action each) of neighbours in the start pile;
-- `aside[b]` (2 more): b is picked and placed twice; on each cycle some block is put aside or falls (`docs/theory.md`).
+- `removed[b]`: block b leaves its start pile (2 actions where it may stay, and has to be placed if it is removed);
+- `at[t, q]`: the base of tower t is placed for good on location q;
+- topples (1) of neighbours in a start pile, and `aside[b]` (2): what frees a block from moving directly.
+
+Relations of precedence hold where their condition does, and each cycle of them is a clause: one of its conditions is
+not there, or one of the blocks whose back edges it uses is freed (`docs/theory.md`).
 """
 
 from __future__ import annotations
 
+import heapq
 import itertools
-import math
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from time import perf_counter
 
-import numpy as np
-
-from smash.planners.milp.arrays import MilpBuilder, OutOfTime
-from smash.planners.milp.solvers import highs
-from smash.planners.precedence.cycles import CycleFinder
+from smash.planners.precedence.clauses import Cheapest, Clauses
 from smash.planners.precedence.graph import ASIDE_COST, MOVE_COST, TOPPLE_COST, Floats, PrecedenceGraph
-from smash.problem.model import Instance, OnGoal
+from smash.problem.model import OnGoal
 from smash.problem.problem import Problem
+from smash.problem.views.demands import Pile
+
+Event = tuple[str, str]
+"""`(REMOVED, block)` or `(PLACED, block)`."""
+REMOVED, PLACED = "R", "P"
+Edge = tuple[Event, tuple[int, ...], str | None]
+"""An event that comes later, the literals under which it does, and the block that moves directly for that, or None."""
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """What a solution of the model leaves and builds where.
+
+    Attributes:
+        kept: per location how many of its lowest blocks stay.
+        at: per base of a tower that is begun anew, its location.
+    """
+
+    kept: dict[str, int]
+    at: dict[str, str]
 
 
 def bases(problem: Problem) -> frozenset[str]:
@@ -37,15 +56,13 @@ def bases(problem: Problem) -> frozenset[str]:
     return frozenset(goal.bottom) | {b for b in goal.ontable if b in loaded or not (falls or b in lying)}
 
 
-def piles_decide(problem: Problem) -> bool:
-    """Whether more locations have to be emptied than are empty or emptied in any case."""
+def places_decide(problem: Problem) -> bool:
+    """Whether the towers that are begun anew are more than the locations that are empty at the start."""
     instance = problem.posed
     if not isinstance(instance.goal, OnGoal):
         return False
-    wanted, keep = bases(problem), problem.demands.keep
-    stay = {instance.start[q][0] for q in instance.locations if keep[q]}
-    free = sum(not keep[q] for q in instance.locations)
-    return len(wanted - stay) > free
+    empty = sum(not instance.start[q] for q in instance.locations)
+    return len(problem.demands.floating) > empty
 
 
 def emptying_bound(
@@ -55,7 +72,8 @@ def emptying_bound(
     deadline: float,
     on_bound: Callable[[int], object],
     threads: int = 1,
-    on_choice: Callable[[dict[str, int]], object] | None = None,
+    on_places: Callable[[Places], int | None] | None = None,
+    maxsat: bool | None = None,
 ) -> int:
     """Return a bound on the cost of every plan of an `on` goal; 0 where there was no time for one.
 
@@ -66,145 +84,274 @@ def emptying_bound(
         deadline: when to stop, in seconds of `time.perf_counter`.
         on_bound: called with every better bound at once.
         threads: the solver's threads.
-        on_choice: called with what each solution keeps: per location how many of its lowest blocks.
+        on_places: called with what each solution keeps and builds where; returns the cost of the best plan known.
+        maxsat: whether core-guided MaxSAT solves the model; None: where it is installed.
     """
-    finder = CycleFinder(graph)
-    known = list(cycles)
-    unit = 1 if problem.options.topple else MOVE_COST
-    bound = 0
-    while perf_counter() < deadline:
-        try:
-            model = _Model(problem, graph, deadline)
-            for cycle in known:
-                model.hit(cycle)
-            milp = model.builder.build()
-        except OutOfTime:
+    model = _Model(problem)
+    for cycle in cycles:
+        model.hit([graph.blocks[block] for block in cycle])
+    best = 0
+
+    def tell(cost: int) -> bool:
+        nonlocal best
+        if model.base + cost > best:
+            best = model.base + cost
+            on_bound(best)
+        return perf_counter() < deadline
+
+    tell(0)
+    solver = Cheapest(model.clauses, tell, threads, maxsat)
+    while perf_counter() < deadline and (values := solver.solve(deadline)) is not None:
+        known = None if on_places is None else on_places(model.places(values))
+        if (known is not None and known <= best) or not model.cut_off(values, deadline):
             break
-        solved = highs.solve(
-            milp, time_limit=deadline - perf_counter(), threads=threads, seed=1, absolute_gap=unit - 0.001
-        )
-        if math.isfinite(solved.bound):
-            proven = unit * math.ceil(solved.bound / unit - 1e-6)
-            if proven > bound:
-                bound = proven
-                on_bound(bound)
-        if solved.status != "optimal" or solved.vector is None:
-            break
-        if on_choice is not None:
-            on_choice(model.kept(solved.vector))
-        left = _left(finder, model.freedom(solved.vector), deadline)
-        if not left:
-            break
-        known.extend(left)
-    return bound
+    solver.close()
+    return best
 
 
-def _left(finder: CycleFinder, freedom: Floats, deadline: float) -> list[tuple[int, ...]]:
-    """Return the cycles that a solution leaves, then those left when a block of each is freed, and so on."""
-    found: list[tuple[int, ...]] = []
-    while cycles := finder.violated(freedom, 0.5, deadline):
-        found.extend(cycles)
-        for cycle in cycles:
-            if not freedom[list(cycle)].any():
-                freedom[min(cycle)] = 1.0
-    return found
-
-
-@dataclass(slots=True)
 class _Model:
-    """The model of one problem: columns by block, and the rows of the cycles."""
+    """The clauses of one problem, and the relations from which its cycles come.
 
-    problem: Problem
-    graph: PrecedenceGraph
-    deadline: float
-    builder: MilpBuilder = field(init=False)
-    removed: dict[str, int] = field(default_factory=dict)
-    moved: dict[str, int] = field(default_factory=dict)
-    fallen: dict[str, int] = field(default_factory=dict)
-    aside: dict[str, int] = field(default_factory=dict)
+    Attributes:
+        clauses: those known so far.
+        base: what every plan costs beyond them.
+    """
 
-    def __post_init__(self) -> None:
-        self.builder = MilpBuilder(self.deadline)
-        instance, demands = self.problem.posed, self.problem.demands
-        leaving = {block for pile in demands.leaving.values() for block in pile}
-        placed = _placed_if_removed(instance)
-        for block in instance.blocks:
-            lies = block in instance.table
-            must = block in leaving or (lies and block in demands.placed)
-            self.removed[block] = self._column(0, lower=float(must))
-            self.moved[block] = self._column(MOVE_COST)
-            if block in placed or lies:
-                self._row([(self.moved[block], 1), (self.removed[block], -1)], 0)
-        for index, block in enumerate(self.graph.blocks):
-            if self.graph.placed[index] and block not in instance.table:
-                self.aside[block] = self._column(ASIDE_COST)
+    def __init__(self, problem: Problem) -> None:
+        instance, demands = problem.posed, problem.demands
+        goal = instance.goal
+        assert isinstance(goal, OnGoal)
+        self.problem = problem
+        self.clauses = Clauses()
+        self.base = 0
+        self._towers = goal.towers()
+        self._named = frozenset(block for tower in self._towers for block in tower)
+        self._leaving = {block for pile in demands.leaving.values() for block in pile}
+        self._forced = self._leaving | (self._named & set(instance.table))
+        self._removed: dict[str, int] = {}
+        self._frees: dict[str, tuple[int, ...]] = {}
+        self._at: dict[tuple[str, str], int] = {}
+        self._edges: dict[Event, list[Edge]] = {}
+        self._forward: dict[str, Edge] = {}
+        self.base += MOVE_COST * len(self._named & set(instance.table))
         for location in instance.locations:
-            self._pile(instance, location)
-        self._empty_places(instance)
+            self._add_pile(location, instance.start[location])
+        self._choose_places()
+        self._relate()
 
-    def _pile(self, instance: Instance, location: str) -> None:
-        """Add what a start pile's blocks wait for, and its topples."""
-        pile, options = instance.start[location], self.problem.options
-        for under, upper in itertools.pairwise(pile):
-            self._row([(self.removed[upper], 1), (self.removed[under], -1)], 0)
-        topples: list[int] = []
+    def _add_pile(self, location: str, pile: Pile) -> None:
+        """Add the removals of a start pile, and what frees its blocks."""
+        options = self.problem.options
+        falls = options.topple and location in self.problem.posed.stacks
         size = min(len(pile), options.max_topple or len(pile))
-        if options.topple and location in instance.stacks and pile:
-            topples = [self._column(TOPPLE_COST) for _ in range(len(pile) - size + 1)]
+        topples = [self.clauses.variable(TOPPLE_COST) for _ in range(len(pile) - size + 1)] if falls and pile else []
         for height, block in enumerate(pile):
-            if not topples:
-                self._row([(self.moved[block], 1), (self.removed[block], -1)], 0)
-                continue
-            self.fallen[block] = self._column(0)
-            self._row([(self.moved[block], 1), (self.fallen[block], 1), (self.removed[block], -1)], 0)
-            taking = topples[max(0, height - size + 1) : height + 1]
-            self._row([*((topple, 1.0) for topple in taking), (self.fallen[block], -1)], 0)
+            cost = 0 if falls and block not in self._named else MOVE_COST
+            if block in self._forced:
+                self.base += cost
+            else:
+                self._removed[block] = self.clauses.variable(cost)
+            if topples:
+                self._frees[block] = tuple(topples[max(0, height - size + 1) : height + 1])
+                if block not in self._named:
+                    self.clauses.ask([*self._frees[block], *self._unless(self._if_removed(block))])
+            elif block in self._named:
+                self._frees[block] = (self.clauses.variable(ASIDE_COST),)
+        for under, upper in itertools.pairwise(pile):
+            if upper in self._removed:
+                self.clauses.ask([*self._if_removed(upper), *self._unless(self._if_removed(under))])
 
-    def _empty_places(self, instance: Instance) -> None:
-        """As many locations are empty from the start, or emptied, as bottoms are made."""
+    def _if_removed(self, block: str) -> tuple[int, ...]:
+        """Return the literals under which a block leaves its pile: none where it does in any case."""
+        return () if block in self._forced else (self._removed[block],)
+
+    @staticmethod
+    def _unless(literals: Iterable[int]) -> list[int]:
+        return [-literal for literal in literals]
+
+    def _moves(self, block: str) -> bool:
+        return block in self._forced or block in self._removed
+
+    def _choose_places(self) -> None:
+        """Give each tower that is begun anew a location."""
+        instance = self.problem.posed
         wanted = bases(self.problem)
-        made, entries = 0, []
-        for pile in instance.start.values():
-            if not pile:
-                made -= 1
-            elif pile[0] not in wanted:
-                entries.append((self.removed[pile[0]], 1.0))
+        grounded = []
+        for tower in self._towers:
+            base = tower[0]
+            if not self._moves(base):
+                continue
+            for location in instance.locations:
+                self._at[base, location] = self.clauses.variable()
+            places = [self._at[base, location] for location in instance.locations]
+            self.clauses.ask([*places, *self._unless(self._if_removed(base))])
+            for one, other in itertools.combinations(places, 2):
+                self.clauses.ask([-one, -other])
+            if base in wanted:
+                grounded.append(base)
+        for location in instance.locations:
+            pile = instance.start[location]
+            for base in grounded:
+                if pile and pile[0] not in self._forced:
+                    self.clauses.ask([-self._at[base, location], self._removed[pile[0]]])
+            for one, other in itertools.combinations(grounded, 2):
+                self.clauses.ask([-self._at[one, location], -self._at[other, location]])
+        self._count_places(wanted)
+
+    def _count_places(self, wanted: frozenset[str]) -> None:
+        """As many locations are empty at the start, or emptied, as bottoms are made: the places say so, but slowly."""
+        piles = self.problem.posed.start.values()
         # A bottom that stays in its place needs no other; one that leaves it frees a place and needs one.
-        at_bottom = {pile[0] for pile in instance.start.values() if pile}
-        made += len(wanted - at_bottom)
-        self._row(entries, made)
+        at_bottom = {pile[0] for pile in piles if pile}
+        made = len(wanted - at_bottom) - sum(not pile for pile in piles)
+        emptied = []
+        for pile in piles:
+            if pile and pile[0] not in wanted:
+                if pile[0] in self._forced:
+                    made -= 1
+                else:
+                    emptied.append(self._removed[pile[0]])
+        if made > 0:
+            self.clauses.counts.append((tuple(emptied), made))
 
-    def hit(self, cycle: Iterable[int]) -> None:
-        """Add the row of a cycle."""
-        blocks = [self.graph.blocks[block] for block in cycle]
-        columns = [column[block] for block in blocks for column in (self.aside, self.fallen) if block in column]
-        self._row([(column, 1.0) for column in columns], 1)
-
-    def kept(self, vector: Floats) -> dict[str, int]:
-        """Return per location how many of its lowest blocks a solution leaves where they are."""
+    def _relate(self) -> None:
+        """Say what comes before what, and under which literals."""
         start = self.problem.posed.start
-        return {at: sum(vector[self.removed[block]] < 0.5 for block in pile) for at, pile in start.items()}
+        on = {block: upper for tower in self._towers for block, upper in itertools.pairwise(tower)}
+        moving = {block for block in self._named if self._moves(block)}
+        for pile in start.values():
+            for under, upper in itertools.pairwise(pile):
+                if self._moves(under) and self._moves(upper):
+                    self._edge((REMOVED, upper), (REMOVED, under), self._if_removed(under))
+                if self._moves(upper) and under in on and on[under] in moving:
+                    conditions = {*self._if_removed(upper), *self._if_removed(on[under])}
+                    self._edge((REMOVED, upper), (PLACED, on[under]), tuple(conditions))
+            for block in pile:
+                if block in moving:
+                    self._edge((PLACED, block), (REMOVED, block), (), block)
+                    self._forward[block] = self._edge((REMOVED, block), (PLACED, block), self._if_removed(block))
+        for under, upper in on.items():
+            if under in moving and upper in moving:
+                self._edge((PLACED, under), (PLACED, upper), self._if_removed(under))
+        for (base, location), place in self._at.items():
+            self._relate_place(base, location, place)
 
-    def freedom(self, vector: Floats) -> Floats:
-        """Return per block of the graph 1 where it does not move directly in a solution."""
-        freed = [
-            sum(vector[column[block]] for column in (self.aside, self.fallen) if block in column)
-            for block in self.graph.blocks
-        ]
-        rounded: Floats = np.round(np.minimum(1.0, np.array(freed, dtype=float)))
-        return rounded
+    def _relate_place(self, base: str, location: str, place: int) -> None:
+        """Say what comes before the base of a tower that is built at a location: what leaves it, and a lower tower."""
+        pile = self.problem.posed.start[location]
+        lowest = next((block for block in pile if block in self._forced), None)
+        for block in pile:
+            if block in self._removed or block == lowest:
+                conditions = {place, *self._if_removed(block), *self._if_removed(base)}
+                self._edge((REMOVED, block), (PLACED, base), tuple(conditions))
+        wanted = bases(self.problem)
+        if base in wanted:
+            return
+        for tower in self._towers:
+            if tower[0] == base or not self._moves(tower[-1]):
+                continue
+            conditions = {place, *self._if_removed(base), *self._if_removed(tower[-1])}
+            if tower[0] in wanted and self._moves(tower[0]):
+                below = {*conditions, self._at[tower[0], location], *self._if_removed(tower[0])}
+                self._edge((PLACED, tower[-1]), (PLACED, base), tuple(below))
+            if tower[0] in pile and tower[0] not in self._forced:
+                stays = self._unless(self._if_removed(tower[0]))
+                self._edge((PLACED, tower[-1]), (PLACED, base), (*conditions, *stays))
 
-    def _column(self, cost: float, lower: float = 0.0) -> int:
-        return int(self.builder.add_columns(1, cost=cost, lower=lower)[0])
+    def _edge(self, earlier: Event, later: Event, conditions: tuple[int, ...], mover: str | None = None) -> Edge:
+        edge = later, conditions, mover
+        self._edges.setdefault(earlier, []).append(edge)
+        return edge
 
-    def _row(self, entries: Iterable[tuple[int, float]], lower: float) -> None:
-        listed = list(entries)
-        columns, values = [column for column, _ in listed], [value for _, value in listed]
-        self.builder.add_rows([0] * len(listed), columns, values, count=1, lower=lower)
+    def hit(self, cycle: Iterable[str]) -> bool:
+        """Ask that a block of a cycle that holds in any case is freed; whether that is new."""
+        return self.clauses.ask(literal for block in cycle for literal in self._frees[block])
+
+    def places(self, values: Floats) -> Places:
+        """Return what a solution keeps and builds where."""
+        instance = self.problem.posed
+        true = self._true(values)
+        kept = {q: sum(not self._is_removed(block, true) for block in pile) for q, pile in instance.start.items()}
+        at: dict[str, str] = {}
+        for (base, location), place in self._at.items():
+            if place in true and self._is_removed(base, true):
+                at.setdefault(base, location)
+        return Places(kept, at)
+
+    def _is_removed(self, block: str, true: set[int]) -> bool:
+        return all(literal in true for literal in self._if_removed(block))
+
+    @staticmethod
+    def _true(values: Floats) -> set[int]:
+        return {number if value > 0.5 else -number for number, value in enumerate(values.tolist(), start=1)}
+
+    def cut_off(self, values: Floats, deadline: float) -> int:
+        """Add the cycles that a solution leaves, then those left when a block of each is freed; return how many."""
+        true = self._true(values)
+        freed = {block for block, literals in self._frees.items() if not true.isdisjoint(literals)}
+        edges = {
+            event: [edge for edge in following if true.issuperset(edge[1])] for event, following in self._edges.items()
+        }
+        added = 0
+        while perf_counter() < deadline:
+            found = self._cycles_left(edges, true, freed, deadline)
+            if not found:
+                break
+            for clause, movers in found:
+                added += self.clauses.ask(clause)
+                if freed.isdisjoint(movers):
+                    freed.add(min(movers))
+        return added
+
+    def _cycles_left(
+        self, edges: Mapping[Event, list[Edge]], true: set[int], freed: set[str], deadline: float
+    ) -> list[tuple[list[int], list[str]]]:
+        """Return a short cycle through each block that is not freed, as clauses, with the blocks that move directly."""
+        found = []
+        for block in self._frees:
+            if perf_counter() > deadline:
+                break
+            if block in freed or block not in self._named or not self._is_removed(block, true):
+                continue
+            way = _shortest((REMOVED, block), (PLACED, block), edges, freed, self._forward[block])
+            if way is not None:
+                conditions, movers = way
+                movers = [block, *movers]
+                clause = [*self._unless(conditions), *(literal for one in movers for literal in self._frees[one])]
+                found.append((clause, movers))
+        return found
 
 
-def _placed_if_removed(instance: Instance) -> frozenset[str]:
-    """Return the blocks that the goal wants in some pile: the table region is no place for them."""
-    goal = instance.goal
-    assert isinstance(goal, OnGoal)
-    return frozenset(goal.on) | frozenset(goal.on.values()) | frozenset(goal.bottom)
+def _shortest(
+    first: Event, last: Event, edges: Mapping[Event, list[Edge]], freed: set[str], without: Edge
+) -> tuple[list[int], list[str]] | None:
+    """Return conditions and directly moving blocks of a way with few of both, or None; `without` one edge."""
+    came: dict[Event, tuple[Event, Edge]] = {}
+    length = {first: 0}
+    waiting = [(0, first)]
+    while waiting:
+        steps, event = heapq.heappop(waiting)
+        if event == last:
+            break
+        if steps > length[event]:
+            continue
+        for edge in edges.get(event, ()):
+            later, conditions, mover = edge
+            if edge is without or (mover is not None and mover in freed):
+                continue
+            reached = steps + len(conditions) + (mover is not None)
+            if reached < length.get(later, reached + 1):
+                length[later] = reached
+                came[later] = (event, edge)
+                heapq.heappush(waiting, (reached, later))
+    if last not in came:
+        return None
+    conditions_of: list[int] = []
+    movers: list[str] = []
+    event = last
+    while event != first:
+        event, (_, conditions, mover) = came[event]
+        conditions_of.extend(conditions)
+        if mover is not None:
+            movers.append(mover)
+    return conditions_of, movers

@@ -2,7 +2,8 @@
 
 Rows are added as cycles are found violated. Where each block is put aside by itself the choices are a directed feedback
 vertex set; if a second does not settle that, an annealed set comes next, and then core-guided MaxSAT where the extra
-`maxsat` is installed, rank inequalities and integer solves where it is not.
+`maxsat` is installed, rank inequalities and integer solves where it is not. Where a topple frees several blocks there
+is no annealed set and no rank inequality; the rest is the same.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import islice
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -53,6 +55,8 @@ SLACK = 0.2
 """Rows exceeded by more are dropped between rounds; sets grow along the others."""
 LONGEST = 8
 """Of the cycles along which sets grow."""
+SHORT_SHARE, MOST_SHORT = 0.2, 200_000
+"""Short cycles are listed for MaxSAT for no more than this share of the time left, and no more of them."""
 MOVES = 10_000
 """Moves of one annealing, per block."""
 ANNEALINGS, ANNEAL_SHARE, RANK_SHARE = 4, 0.15, 0.4
@@ -206,17 +210,18 @@ class HittingSetSolver:
         return False
 
     def _strengthen(self, deadline: float) -> None:
-        """Bring bound and cost nearer to each other, where the choices are blocks: annealing, rank inequalities."""
+        """Bring bound and cost nearer to each other: by annealing where the choices are blocks, by MaxSAT or ranks."""
         from smash.planners.precedence.turns import turn_graph
 
         turns = turn_graph(self.graph)
-        if turns is None or len(turns.free) == 0:
+        if (turns is None and self._prover != MAXSAT) or (turns is not None and len(turns.free) == 0):
             return
         self._compile(min(MOST_COMPILE_SECONDS, 0.2 * (deadline - perf_counter())))
         if not self._kernels.compiled:
             return
-        self._anneal(turns, _share(deadline, ANNEAL_SHARE))
-        if self._prover == MAXSAT:
+        if turns is not None:
+            self._anneal(turns, _share(deadline, ANNEAL_SHARE))
+        if turns is None or self._prover == MAXSAT:
             self._count(turns, deadline)
             return
         from smash.planners.precedence.ranks import RankFinder
@@ -235,21 +240,27 @@ class HittingSetSolver:
             if seed and self.state.chosen is before:
                 return
 
-    def _count(self, turns: TurnGraph, deadline: float) -> None:
-        """Find the fewest choices by MaxSAT, adding the cycles that each answer leaves, until one leaves none.
+    def _count(self, turns: TurnGraph | None, deadline: float) -> None:
+        """Find the cheapest choices by MaxSAT, adding the cycles that each answer leaves, until one leaves none.
 
         An answer is there only once all is proven, so that cycles of four and more blocks have to be known before.
         """
-        from smash.planners.precedence.maxsat import MaxSat
+        from smash.planners.precedence.maxsat import MaxSat, clause_of, short_cycles
 
         self._round(_share(deadline, ROUND_SHARE))
         rows = self.state.rows
 
-        def tell(fewest: int) -> bool:
-            self._raise_bound(fewest * self._unit, MAXSAT)
+        def tell(units: int) -> bool:
+            self._raise_bound(units * self._unit, MAXSAT)
             return not self._proven()
 
-        solver = MaxSat(turns, rows, deadline, tell)
+        clauses = [clause_of(row) for row in rows]
+        if turns is not None:
+            clauses += [clause_of((choice,)) for choice in sorted(turns.forced)]
+            known = islice(short_cycles(turns, _share(deadline, SHORT_SHARE)), MOST_SHORT)
+            clauses += [clause_of(cycle) for cycle in known]
+        weights = [choice.cost // self._unit for choice in self.graph.choices]
+        solver = MaxSat(weights, clauses, (), tell)
         while (values := solver.solve(deadline)) is not None:
             self.state.rounds["maxsat"] += 1
             known = len(rows)
@@ -258,7 +269,7 @@ class HittingSetSolver:
             if self._proven() or len(rows) == known:
                 break
             for row in rows[known:]:
-                solver.add(row)
+                solver.add(clause_of(row))
         solver.close()
 
     def _rank(self, finder: RankFinder, until: float, deadline: float) -> None:

@@ -1,30 +1,26 @@
-"""The fewest choices of equal cost that hit every cycle, by core-guided MaxSAT (the extra `maxsat`).
+"""The cheapest choices that hit every cycle, by core-guided MaxSAT (the extra `maxsat`).
 
 RC2 (A. Ignatiev, A. Morgado and J. Marques-Silva, JSAT 2019) of python-sat: a clause a cycle, a soft clause a choice;
-each unsatisfiable core raises the bound by one, which holds whatever cycles are still unknown. The cycles of two and
-three blocks are there from the start, as far as there is time for them; others are added where an answer leaves them.
+each unsatisfiable core raises the bound, which holds whatever cycles are still unknown. Where the choices are blocks
+the cycles of two and three of them can be listed; others are added where an answer leaves them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from itertools import islice
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from time import perf_counter
 from typing import Any
 
 import numpy as np
+from pysat.card import CardEnc, EncType
 from pysat.examples.rc2 import RC2
 from pysat.formula import WCNF
 
 from smash.planners.precedence.graph import Floats
-from smash.planners.precedence.relaxation import Row
 from smash.planners.precedence.turns import TurnGraph
 
 CONFLICTS = 5_000
 """Between two looks at the clock: a fraction of a second."""
-SHORT_SHARE, MOST_SHORT = 0.2, 200_000
-"""Short cycles are listed for no more than this share of the time, and no more of them: the others are added where an
-answer leaves them."""
 
 
 class Stopped(Exception):
@@ -32,32 +28,39 @@ class Stopped(Exception):
 
 
 class MaxSat:
-    """The rows known so far; `solve` finds the fewest choices that hit them.
+    """The clauses known so far; `solve` finds the cheapest variables that fulfil them.
 
     Args:
-        turns: the turn graph.
-        rows: those known from elsewhere.
-        deadline: when `solve` will have to stop [s, `perf_counter`]: a share of the time is for the short cycles.
-        on_bound: called at once with every better bound on the number of choices; says whether to go on.
+        weights: what each variable costs where it is true.
+        clauses: of literals from 1 on, those of false variables negative.
+        counts: pairs of variables and how many of them must be true.
+        on_bound: called at once with every better bound on the cost; says whether to go on.
     """
 
-    def __init__(self, turns: TurnGraph, rows: Iterable[Row], deadline: float, on_bound: Callable[[int], bool]) -> None:
-        self._size = len(turns.edges)
+    def __init__(
+        self,
+        weights: Sequence[int],
+        clauses: Iterable[Sequence[int]],
+        counts: Iterable[tuple[Sequence[int], int]],
+        on_bound: Callable[[int], bool],
+    ) -> None:
+        self._size = top = len(weights)
         formula = WCNF()
-        formula.extend([[choice + 1] for choice in sorted(turns.forced)])
-        formula.extend([_clause(row) for row in rows])
-        began = perf_counter()
-        known = islice(short_cycles(turns, began + SHORT_SHARE * (deadline - began)), MOST_SHORT)
-        formula.extend([_clause(cycle) for cycle in known])
-        formula.extend([[-(choice + 1)] for choice in range(self._size)], weights=[1] * self._size)
+        formula.extend([list(clause) for clause in clauses])
+        for variables, count in counts:
+            encoded = CardEnc.atleast(list(variables), count, top_id=top, encoding=EncType.seqcounter)
+            top = max(top, encoded.nv)
+            formula.extend(encoded.clauses)
+        costly = [(-(number + 1), weight) for number, weight in enumerate(weights) if weight]
+        formula.extend([[literal] for literal, _ in costly], weights=[weight for _, weight in costly])
         self._solver = _CoreGuided(formula, on_bound)
 
-    def add(self, row: Row) -> None:
-        """Ask for one of the choices of a row too."""
-        self._solver.add_clause(_clause(row))
+    def add(self, clause: Sequence[int]) -> None:
+        """Ask for one of the literals of a clause too."""
+        self._solver.add_clause(list(clause))
 
     def solve(self, deadline: float) -> Floats | None:
-        """Return the fewest choices that hit all rows as values, 1 where taken; None where it was stopped before.
+        """Return the cheapest variables that fulfil all clauses, 1 where true; None where it was stopped before.
 
         Args:
             deadline: when to stop [s, `perf_counter`]; not to be called again once it was stopped.
@@ -146,5 +149,6 @@ def short_cycles(turns: TurnGraph, deadline: float = np.inf) -> Iterator[tuple[i
                 yield first, second, third
 
 
-def _clause(row: Iterable[int]) -> list[int]:
+def clause_of(row: Iterable[int]) -> list[int]:
+    """Return the clause that asks for one of the choices of a row."""
     return [choice + 1 for choice in sorted(row)]

@@ -49,16 +49,19 @@ class Demands:
         return not self.placed and not self.loose
 
 
-def demands_of(instance: Instance, most: Mapping[str, int] | None = None) -> Demands:
+def demands_of(
+    instance: Instance, most: Mapping[str, int] | None = None, at: Mapping[str, str] | None = None
+) -> Demands:
     """Work out what the goal of `instance` asks of its start.
 
     Args:
         instance: the problem.
         most: of an `on` goal, how many of the lowest blocks of locations are kept at most; None: all that may stay.
+        at: of an `on` goal, the locations of towers that are begun anew, by their base; the others may be anywhere.
     """
     goal = instance.goal
     if isinstance(goal, OnGoal):
-        return _on_demands(instance, goal, most or {})
+        return _on_demands(instance, goal, most or {}, at or {})
     return _located_demands(instance, goal)
 
 
@@ -81,7 +84,7 @@ def _located_demands(instance: Instance, goal: StacksGoal | PositionsGoal) -> De
     return _demands(instance, keep, build, ())
 
 
-def _on_demands(instance: Instance, goal: OnGoal, most: Mapping[str, int]) -> Demands:
+def _on_demands(instance: Instance, goal: OnGoal, most: Mapping[str, int], at: Mapping[str, str]) -> Demands:
     above = {under: upper for upper, under in goal.on.items()}
     bottom, clear = frozenset(goal.bottom), frozenset(goal.clear)
     grounded = bottom.union(goal.ontable)
@@ -102,14 +105,20 @@ def _on_demands(instance: Instance, goal: OnGoal, most: Mapping[str, int]) -> De
             kept += 1
         keep[location] = kept
     build: dict[str, Pile] = {}
-    floating = []
+    floating: list[FloatingChain] = []
     for tower in goal.towers():
         standing_part = sum(block in stays for block in tower)
-        chain = tower[standing_part:]
-        if chain and standing_part:
-            build[stays[tower[standing_part - 1]]] = chain
-        elif chain:
-            floating.append(FloatingChain(chain, tower[0] in bottom))
+        rest = tower[standing_part:]
+        if rest and standing_part:
+            build[stays[tower[standing_part - 1]]] = rest
+        elif rest:
+            floating.append(FloatingChain(rest, tower[0] in bottom))
+    # What is begun at a location stands on what is built on its kept part, and a bottom comes first.
+    for chain in sorted(floating, key=lambda chain: not chain.bottom):
+        location = at.get(chain.blocks[0])
+        if location is not None:
+            build[location] = build.get(location, ()) + chain.blocks
+    floating = [chain for chain in floating if chain.blocks[0] not in at]
     return _demands(instance, keep, build, tuple(floating))
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given, settings
 
 from smash.planners.precedence.bound import precedence_bound
-from smash.planners.precedence.emptying import piles_decide
+from smash.planners.precedence.emptying import places_decide
 from smash.problem import Law, PlanOptions
 from smash.problem.problem import Problem
 from tests.arrangements import wide
@@ -21,11 +21,11 @@ def test_the_bound_holds_and_its_plan_costs_what_the_cheapest_choices_say(instan
     assume(best is not None)
     bound = precedence_bound(Problem(instance, options), math.inf)
     assert bound.relaxed_cost <= bound.bound <= best
-    assert bound.bound == bound.relaxed_cost or piles_decide(Problem(instance, options))
+    assert bound.bound == bound.relaxed_cost or places_decide(Problem(instance, options))
     if bound.actions is not None:
         assert Law(instance, options).check(bound.actions).accepted
         assert len(bound.actions) >= best
-        assert len(bound.actions) == bound.relaxed_cost == best or piles_decide(Problem(instance, options))
+        assert len(bound.actions) == bound.relaxed_cost == best or places_decide(Problem(instance, options))
     assert bound.settled == (bound.actions is not None and len(bound.actions) == bound.bound == best)
 
 

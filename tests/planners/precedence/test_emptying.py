@@ -1,26 +1,29 @@
-"""Which piles to empty: the bound holds for all `on` goals, and sees what cycles alone do not."""
+"""Which piles to empty, which tower where: the bound holds for all `on` goals, and sees what cycles alone do not."""
 
 import math
 
 import pytest
 from hypothesis import assume, given, settings
 
-from smash.planners.precedence.emptying import bases, emptying_bound, piles_decide
+from smash.planners.precedence.emptying import bases, emptying_bound, places_decide
 from smash.planners.precedence.graph import build_graph
-from smash.planners.precedence.hitting_set import HittingSetSolver
+from smash.planners.precedence.hitting_set import MAXSAT_MODULE, HittingSetSolver
 from smash.problem import OnGoal, PlanOptions, make_instance
+from smash.problem.extras import is_there
 from smash.problem.problem import Problem
 from tests.oracle import optimal_cost
 from tests.relations import related
 from tests.strategies import instances, plan_options
 
+needs_maxsat = pytest.mark.skipif(not is_there(MAXSAT_MODULE), reason="python-sat of the extra `maxsat` is not there")
 
-def bounds(problem):
+
+def bounds(problem, maxsat=False):
     """Return the bound of the cycles alone, and that of the joined model."""
     graph = build_graph(problem)
     found = HittingSetSolver(graph).solve(math.inf)
     told = []
-    joined = emptying_bound(problem, graph, found.cycles, math.inf, told.append)
+    joined = emptying_bound(problem, graph, found.cycles, math.inf, told.append, maxsat=maxsat)
     assert told == sorted(set(told))
     assert joined == (told[-1] if told else 0)
     return graph.base_cost + found.bound, joined
@@ -51,14 +54,34 @@ def test_a_second_bottom_has_the_lower_pile_emptied(options, cost):
         {"s1": "abc", "s2": "de", "s3": "fgh"}, goal, name="x", blocks="abcdefgh", stacks=["s1", "s2", "s3"]
     )
     problem = Problem(instance, options)
-    assert piles_decide(problem)
+    assert places_decide(problem)
     assert bases(problem) == {"a", "c"}
     cycles, joined = bounds(problem)
     assert cycles == 2
     assert joined == cost == optimal_cost(instance, options)
 
 
+@pytest.mark.parametrize("maxsat", [False, pytest.param(True, marks=needs_maxsat)])
+def test_what_leaves_a_location_is_in_the_way_of_the_tower_that_is_built_there(maxsat):
+    """Wherever c and b go with one location free, one of them cannot move directly; no location is short, though."""
+    goal = OnGoal({"a": "b"}, ("c",))
+    instance = make_instance({"s1": "acb"}, goal, name="x", blocks="abc", stacks=["s1", "s2"])
+    problem = Problem(instance, PlanOptions(max_topple=2))
+    assert places_decide(problem)
+    assert bounds(problem, maxsat) == (6, 7)
+    assert optimal_cost(instance, problem.options) == 7
+
+
+@needs_maxsat
+@settings(max_examples=60, deadline=None)
+@given(instances(max_blocks=4, kinds=("on",)), plan_options())
+def test_both_solvers_prove_the_same(instance, options):
+    problem = Problem(instance, options)
+    assume(problem.infeasible is None)
+    assert bounds(problem, maxsat=True) == bounds(problem)
+
+
 def test_where_places_are_free_the_cycles_decide():
     goal = OnGoal({}, ("a", "b"))
     instance = make_instance({"s1": ("a", "b")}, goal, name="x", blocks="ab", stacks=["s1", "s2"])
-    assert not piles_decide(Problem(instance, PlanOptions()))
+    assert not places_decide(Problem(instance, PlanOptions()))

@@ -6,11 +6,13 @@ from time import perf_counter
 
 import pytest
 
+from smash.planners.precedence import hitting_set
 from smash.planners.precedence.graph import build_graph
-from smash.planners.precedence.hitting_set import HIGHS, HittingSetSolver
+from smash.planners.precedence.hitting_set import HIGHS, MAXSAT, HittingSetSolver
 from smash.problem import PlanOptions
 from smash.problem.problem import Problem
 from smash.problem.sets.open_instances import Shape, draw_instance
+from tests.arrangements import wide
 from tests.planners.precedence.events import hits_all
 
 pytest.importorskip("pysat", reason="python-sat of the extra `maxsat` is not installed")
@@ -40,6 +42,17 @@ def test_annealing_and_rank_inequalities_prove_nothing_that_is_not_so(kernels):
     solver = HittingSetSolver(graph, prover=HIGHS)
     found = solver.solve(perf_counter() + 30)
     assert found.bound <= 2 * fewest_aside(graph) <= solver.cost(found.chosen)
+
+
+@pytest.mark.parametrize(("blocks", "stacks", "seed"), [(30, 8, 9), (40, 6, 5)])
+def test_runs_that_one_topple_takes_are_counted_too(blocks, stacks, seed, kernels, monkeypatch):
+    monkeypatch.setattr(hitting_set, "QUICK_CHOICES", 0)
+    graph = build_graph(Problem(wide(blocks, stacks, seed), PlanOptions(max_topple=2)))
+    solver = HittingSetSolver(graph, prover=MAXSAT)
+    found = solver.solve(math.inf)
+    assert hits_all(graph, found.chosen)
+    assert found.prover == MAXSAT
+    assert found.bound == solver.cost(found.chosen) == HittingSetSolver(graph, prover=HIGHS).solve(math.inf).bound
 
 
 @pytest.mark.slow

@@ -52,6 +52,15 @@ def test_a_tower_of_which_nothing_stays_is_built_anywhere():
     assert asked.leaving["s1"] == ("a", "b", "c")
 
 
+def test_towers_are_built_where_it_is_said_the_bottom_first_and_above_what_is_begun_there():
+    start = {"s1": "ad", "s2": "bce"}
+    goal = OnGoal({"e": "a", "c": "d"}, ("b",))
+    instance = make_instance(name="x", blocks="abcde", stacks=["s1", "s2"], start=start, goal=goal)
+    asked = demands_of(instance, None, {"d": "s1"})
+    assert (asked.build, asked.floating) == ({"s1": ("e", "d", "c")}, ())
+    assert demands_of(instance, {"s2": 0}, {"b": "s2", "d": "s2"}).build == {"s1": ("e",), "s2": ("b", "d", "c")}
+
+
 @pytest.mark.parametrize("bottom", [(), ("b",)])
 def test_a_block_that_should_be_at_a_bottom_leaves_what_it_stands_on(bottom):
     assert demands(OnGoal({}, bottom)).placed == set(bottom)
