@@ -87,7 +87,7 @@ class Drawn:
     def __init__(self):
         self.colours = []
 
-    def createVisualShape(self, kind, *, halfExtents, rgbaColor):  # noqa: N802, N803
+    def createVisualShape(self, kind, *, rgbaColor, **size):  # noqa: N802, N803
         self.colours.append(tuple(rgbaColor[:3]))
 
     def __getattr__(self, name):

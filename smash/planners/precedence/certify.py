@@ -194,7 +194,9 @@ class _Prover:
     def _kernels(self) -> Kernels | None:
         """Return the compiled kernels if they are there in a share of the time."""
         now = perf_counter()
-        return GraphCompiler.code(now + min(MOST_COMPILE_SECONDS, COMPILE_SHARE * (self.deadline - now)))
+        until = now + min(MOST_COMPILE_SECONDS, COMPILE_SHARE * (self.deadline - now))
+        kernels: Kernels | None = GraphCompiler.code(until)
+        return kernels
 
     def _branch(self, fixed: Fixed, target: int) -> tuple[Leaf | Cases, int]:
         """Return a proof for the case `fixed` and its bound, below `target` if time ran out or that is not true."""

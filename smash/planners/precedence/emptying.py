@@ -194,8 +194,8 @@ class _Model:
             for base in grounded:
                 if pile and pile[0] not in self._forced:
                     self.clauses.ask([-self._at[base, location], self._removed[pile[0]]])
-            for one, other in itertools.combinations(grounded, 2):
-                self.clauses.ask([-self._at[one, location], -self._at[other, location]])
+            for lower, higher in itertools.combinations(grounded, 2):
+                self.clauses.ask([-self._at[lower, location], -self._at[higher, location]])
         self._count_places(wanted)
 
     def _count_places(self, wanted: frozenset[str]) -> None:

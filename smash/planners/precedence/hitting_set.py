@@ -257,8 +257,8 @@ class HittingSetSolver:
         clauses = [clause_of(row) for row in rows]
         if turns is not None:
             clauses += [clause_of((choice,)) for choice in sorted(turns.forced)]
-            known = islice(short_cycles(turns, _share(deadline, SHORT_SHARE)), MOST_SHORT)
-            clauses += [clause_of(cycle) for cycle in known]
+            short = islice(short_cycles(turns, _share(deadline, SHORT_SHARE)), MOST_SHORT)
+            clauses += [clause_of(cycle) for cycle in short]
         weights = [choice.cost // self._unit for choice in self.graph.choices]
         solver = MaxSat(weights, clauses, (), tell)
         while (values := solver.solve(deadline)) is not None:

@@ -115,9 +115,9 @@ def _on_demands(instance: Instance, goal: OnGoal, most: Mapping[str, int], at: M
             floating.append(FloatingChain(rest, tower[0] in bottom))
     # What is begun at a location stands on what is built on its kept part, and a bottom comes first.
     for chain in sorted(floating, key=lambda chain: not chain.bottom):
-        location = at.get(chain.blocks[0])
-        if location is not None:
-            build[location] = build.get(location, ()) + chain.blocks
+        begun = at.get(chain.blocks[0])
+        if begun is not None:
+            build[begun] = build.get(begun, ()) + chain.blocks
     floating = [chain for chain in floating if chain.blocks[0] not in at]
     return _demands(instance, keep, build, tuple(floating))
 
