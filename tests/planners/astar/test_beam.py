@@ -99,7 +99,6 @@ def test_the_weight_of_a_pass_that_leaves_nothing_out_does_not_matter(machine_co
             costs.append(cost_of(running.engine.steps(problem, moves)))
     assert costs[-1] == best
     assert not running.truncated
-    assert running.expanded > 0
 
 
 def test_passes_take_the_weights_in_turn(monkeypatch):

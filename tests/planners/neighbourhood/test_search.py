@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from smash.planners.greedy import greedy_steps
 from smash.planners.neighbourhood import NeighbourhoodSearch, search
 from smash.planners.neighbourhood.arms import Arm
-from smash.problem import PlanOptions
+from smash.problem import PlanOptions, make_instance
 from smash.problem.problem import Problem
 from smash.problem.sets.generators import generate
 from smash.problem.sets.open_instances import Shape, draw_instance
@@ -109,7 +109,7 @@ def test_nothing_is_tried_before_the_machine_code_is_there(monkeypatch):
 
 
 def test_a_plan_too_short_to_be_taken_apart_is_left_alone():
-    instance = generate("single", 2, buffers=0, seed=1)[0]
+    instance = make_instance(start={"s1": ["a"], "s2": []}, goal={"s2": ["a"]})
     problem = Problem(instance, PlanOptions())
     plans, last = improved(problem, [])
     assert (plans, last) == ([], [])

@@ -71,8 +71,6 @@ def test_a_gap_of_the_cycles_is_closed_by_maxsat_where_it_is_installed(kernels):
 @NO_MAXSAT
 @pytest.mark.usefixtures("at_once")
 def test_maxsat_that_is_stopped_leaves_a_bound_that_holds(kernels, monkeypatch):
-    from smash.planners.precedence import maxsat
-
     graph = build_graph(Problem(wide(60, 10, seed=2), PlanOptions(topple=False)))
     full = HittingSetSolver(graph).solve(math.inf).bound
     stopped = HittingSetSolver(graph)
@@ -111,7 +109,7 @@ def test_short_cycles_that_there_was_no_time_for_are_added_where_an_answer_leave
 
     graph = build_graph(Problem(wide(40, 8, seed=4), PlanOptions(topple=False)))
     full = HittingSetSolver(graph).solve(math.inf)
-    monkeypatch.setattr(maxsat, "MOST_SHORT", most)
+    monkeypatch.setattr(hitting_set, "MOST_SHORT", most)
     found = HittingSetSolver(graph).solve(math.inf)
     assert found.bound == full.bound
     assert hits_all(graph, found.chosen)
@@ -125,9 +123,9 @@ def test_maxsat_begins_with_long_cycles_that_the_relaxation_did_not_ask_for(kern
     given = []
     begin = maxsat.MaxSat.__init__
 
-    def noted(self, turns, rows, *more):
-        given.append({row for row in rows if len(row) > 3})
-        begin(self, turns, rows, *more)
+    def noted(self, weights, clauses, *more):
+        given.append({tuple(clause) for clause in clauses if len(clause) > 3})
+        begin(self, weights, clauses, *more)
 
     monkeypatch.setattr(maxsat.MaxSat, "__init__", noted)
     for roundings in (0, hitting_set.ROUNDINGS):
