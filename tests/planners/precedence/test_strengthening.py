@@ -71,6 +71,8 @@ def test_a_gap_of_the_cycles_is_closed_by_maxsat_where_it_is_installed(kernels):
 @NO_MAXSAT
 @pytest.mark.usefixtures("at_once")
 def test_maxsat_that_is_stopped_leaves_a_bound_that_holds(kernels, monkeypatch):
+    from smash.planners.precedence import maxsat
+
     graph = build_graph(Problem(wide(60, 10, seed=2), PlanOptions(topple=False)))
     full = HittingSetSolver(graph).solve(math.inf).bound
     stopped = HittingSetSolver(graph)
@@ -105,8 +107,6 @@ def test_short_cycles_are_all_cycles_of_two_and_three_without_a_shorter_one(seed
 @pytest.mark.usefixtures("at_once")
 @pytest.mark.parametrize("most", [0, 7])
 def test_short_cycles_that_there_was_no_time_for_are_added_where_an_answer_leaves_them(most, kernels, monkeypatch):
-    from smash.planners.precedence import maxsat
-
     graph = build_graph(Problem(wide(40, 8, seed=4), PlanOptions(topple=False)))
     full = HittingSetSolver(graph).solve(math.inf)
     monkeypatch.setattr(hitting_set, "MOST_SHORT", most)
