@@ -90,6 +90,7 @@ tables-full: needs-analysis-execution-pddl physics ## both tables whole: 20 inst
 	$(BIN)/python -m smash episodes runs/tables-full --label fd-lama --policy replan --jobs 2
 	$(BIN)/python -m smash episodes runs/tables-full --label smash --label 'smash, seconds' --policy replan --seeds 3 --jobs 2
 	$(BIN)/python -m smash_analysis.execution_tables runs/tables-full
+	$(BIN)/python -m smash_analysis.forecasts runs/tables-full
 
 seconds: needs-analysis-execution physics ## plans for seconds beside those of fewest actions: what topple saves, expected against measured (about an hour; it can be resumed)
 	$(BIN)/python -m smash sweep experiments/seconds.toml --out runs/seconds
