@@ -6,7 +6,7 @@ block is in the hand.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
 from math import hypot, inf
 
@@ -198,14 +198,24 @@ class Performer:
         except NoMotion:
             if not isinstance(task.action, Pick) or task.action.source != TABLE:
                 raise
-            block, where = task.action.block, self.look()
-            above = covering(block, state.table, where.blocks, self.world.tabletop.size(block).height)
-            if not above:
+            if not self._uncover(task.action.block, state.table, row):
                 raise
-        for name in above:
-            row.aside.append(name)
-            self._set_aside(name, row)
+        self.study(task.action.block)
         return self._planned(task, state, row)
+
+    def _uncover(self, block: str, loose: Collection[str], row: Performed) -> bool:
+        """Set aside what lies on a block, from the top; say whether anything did.
+
+        Raises:
+            ExecutionFailure: where it cannot be.
+        """
+        for _ in loose:
+            above = covering(block, loose, self.look().blocks, self.world.tabletop)
+            if not above:
+                break
+            self._set_aside(above[0], row)
+            row.aside += [above[0]] if above[0] not in row.aside else []
+        return bool(row.aside)
 
     def _set_aside(self, block: str, row: Performed) -> None:
         """Pick a block that lies on others, and put it down beside them, in the table region.
@@ -214,9 +224,14 @@ class Performer:
             ExecutionFailure: where it cannot be picked, or there is no place for it.
         """
         hand, arm = self.grounder.pick_and_place, self.grounder.arm
-        self.study(block)
+        try:
+            self.study(block)
+        except Blind as failure:
+            raise NoMotion(str(failure)) from None
         where = self.look()
         pose = where.blocks[block]
+        if not free_places(self.world.tabletop, where, block):
+            raise NoMotion(f"no room in the table region to set block {block!r} aside")
         with _counted(row):
             segments, grasp = hand.pick(self.world.commanded(), block, pose, arm.around(where))
         follow(self.world, segments)

@@ -128,6 +128,7 @@ class SmashPlanner(MethodPlanner):
             Method("beam", plain, part.beams, BEAM_SHARE if blocks <= MANY_BLOCKS else LARGE_BEAM_SHARE),
             Method("search again", plain, part.search, AGAIN_SHARE),
             Method("neighbourhoods to the end", plain, part.neighbourhoods),
+            Method("greedy passes to the end", plain, part.greedy_passes),  # where nothing compiled runs
         )
 
 

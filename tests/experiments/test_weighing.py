@@ -231,3 +231,21 @@ def test_the_time_of_choosing_counts(instance):
         return Choice(question.starts[0], 0.7, {}, 1.0)
 
     assert weighed(job(instance), Asked(), ELSEWHERE, choose_by=third).wall_seconds == pytest.approx(0.02 + 0.7)
+
+
+def test_the_plan_without_topple_is_kept_where_it_is_the_only_one_and_weighing_fails(instance):
+    def broken(question):
+        raise NotChosen("weighing its plans: out of memory", interrupted=False)
+
+    report = weighed(job(instance), Slow(needs=2), ELSEWHERE, choose_by=broken)
+    assert (report.outcome, report.reason) == ("crashed", "weighing its plans: out of memory")
+    assert check_plan(instance, report.plan).accepted
+
+
+def test_no_process_is_begun_for_a_run_that_is_stopped(instance):
+    asked = Asked()
+    report = weighed(
+        job(instance), asked, ELSEWHERE, lambda: bool(asked.jobs), choose_by=lambda question: pytest.fail("weighed")
+    )
+    assert report.outcome == "interrupted"
+    assert check_plan(instance, report.plan).accepted

@@ -166,6 +166,7 @@ LAST = [
     ("beam", 0.5, math.inf),
     ("search again", 0.5, math.inf),
     ("neighbourhoods to the end", 1.0, math.inf),
+    ("greedy passes to the end", 1.0, math.inf),
 ]
 LAYERED = ("layered", 0.5, math.inf)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from itertools import product
 from math import hypot
 
@@ -23,7 +23,7 @@ STEPS = 8
 COVERS = 0.5
 """A block lies on another where its middle is higher by this share of the other's height, or more, ..."""
 NEAR = 1.2
-"""... and no further away, seen from above, than so many sides of the other."""
+"""... and no further away, seen from above, than so many times half the sum of their sides."""
 
 
 def free_places(tabletop: Tabletop, where: Geometry, block: str) -> list[tuple[float, float]]:
@@ -53,24 +53,26 @@ def free_places(tabletop: Tabletop, where: Geometry, block: str) -> list[tuple[f
     return sorted(free, key=lambda place: pose.distance(*place))
 
 
-def covering(block: str, loose: Collection[str], poses: dict[str, BlockPose], side: float) -> list[str]:
+def covering(block: str, loose: Collection[str], poses: Mapping[str, BlockPose], tabletop: Tabletop) -> list[str]:
     """Loose blocks that lie on a block, or on one that does, the highest first.
 
     Args:
         block: Its name.
         loose: Blocks that stand at no location.
         poses: Of all blocks.
-        side: Of a block [m].
+        tabletop: The scene, which has their sizes.
     """
     found: list[str] = []
     under = [block]
     while under:
-        low = poses[under.pop()]
+        below = under.pop()
+        low, size = poses[below], tabletop.size(below)
         for name in loose:
             pose = poses[name]
             higher = float(pose.position[2] - low.position[2])
-            over = pose.distance(float(low.position[0]), float(low.position[1])) < NEAR * side
-            if name not in found and name != block and higher > COVERS * side and over:
+            near = NEAR * (max(size.extents(low)[:2]) + max(tabletop.size(name).extents(pose)[:2])) / 2
+            over = pose.distance(float(low.position[0]), float(low.position[1])) < near
+            if name not in found and name != block and higher > COVERS * size.upright(low) and over:
                 found.append(name)
                 under.append(name)
     return sorted(found, key=lambda name: -float(poses[name].position[2]))

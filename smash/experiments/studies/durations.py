@@ -77,7 +77,8 @@ def durations(
             law.apply(state, action)
         except IllegalAction:
             return
-        yield Duration(str(row.action[0]), travel, float(row.times.execution))
+        if not row.aside:  # else its time holds another pick and place
+            yield Duration(str(row.action[0]), travel, float(row.times.execution))
 
 
 def fit(measured: Iterable[Duration]) -> Fit:

@@ -89,7 +89,10 @@ def chosen_apart(question: Question, model: OutcomeModel | None, stop: Event | N
     Raises:
         NotChosen: where it is stopped, or fails.
     """
-    ended = done(Weighing(question, model), stop)
+    try:
+        ended = done(Weighing(question, model), stop)
+    except SmashError as error:  # no process can be started
+        raise NotChosen(f"weighing its plans: {error}", interrupted=False) from None
     if ended.answer is None:
         raise NotChosen(ended.reason if ended.interrupted else f"weighing its plans: {ended.reason}", ended.interrupted)
     actions = tuple(action_from_list(entry, "choice") for entry in ended.answer["actions"])

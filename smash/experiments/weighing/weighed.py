@@ -104,10 +104,12 @@ def weighed(
         return asked.report()
     question = Question(job, tuple(asked.plans), asked.spent, first.plan.status == "optimal")
     try:
+        if stopped():
+            raise NotChosen("stopped from outside", interrupted=True)
         choice = (choose_by or choose_here)(question)
     except NotChosen as error:
         ended: OutcomeName = "interrupted" if error.interrupted else "crashed"
-        return replace(asked.report(), outcome=ended, reason=str(error))
+        return replace(_unweighed(asked, job), outcome=ended, reason=str(error))
     return _robust(asked, choice) if by_actions else _fastest(asked, job, choice, stopped())
 
 
@@ -119,6 +121,13 @@ def _ask_on(asked: _Asked, job: Job, stopped: Callable[[], bool]) -> None:
     left = job.budget - asked.spent
     if not asked.plans and left > 0.0 and not stopped():
         asked.once(job.problem, left)
+
+
+def _unweighed(asked: _Asked, job: Job) -> Report:
+    """Return the planner's report with the shortest of the plans that it found, with topple or without."""
+    law = job.problem.law
+    shortest = min(asked.plans, key=lambda actions: law.check(actions).cost or 0)
+    return _fastest(asked, job, Choice(shortest, 0.0, {}), stopped=False)
 
 
 def _robust(asked: _Asked, choice: Choice) -> Report:

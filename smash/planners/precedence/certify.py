@@ -279,8 +279,8 @@ class _Prover:
         while (row := self._banned_row(banned)) is None:  # the ranks alone say so: a cycle that does is there too
             allowed = np.ones(len(self._costs))
             allowed[list(banned)] = 0.0
-            for cycle in self._finder.violated(self.graph.freedom(allowed), 0.5):
-                self.add(cycle)
+            if not [cycle for cycle in self._finder.violated(self.graph.freedom(allowed), 0.5) if self.add(cycle)]:
+                return Leaf([]), 0
         bound = int(self._costs.sum()) + self._unit
         return Leaf([(row, ONE * bound)]), bound
 

@@ -29,6 +29,8 @@ from smash.problem.views.demands import Pile
 Event = tuple[str, str]
 """`(REMOVED, block)` or `(PLACED, block)`."""
 REMOVED, PLACED = "R", "P"
+MOST_PAIRS = 500_000
+"""Larger models take longer to build than they are worth: about 80 locations that are all to be built on anew."""
 Edge = tuple[Event, tuple[int, ...], str | None]
 """An event that comes later, the literals under which it does, and the block that moves directly for that, or None."""
 
@@ -87,6 +89,8 @@ def emptying_bound(
         on_places: called with what each solution keeps and builds where; returns the cost of the best plan known.
         maxsat: whether core-guided MaxSAT solves the model; None: where it is installed.
     """
+    if _pairs(problem) > MOST_PAIRS:
+        return 0
     model = _Model(problem)
     for cycle in cycles:
         model.hit([graph.blocks[block] for block in cycle])
@@ -107,6 +111,12 @@ def emptying_bound(
             break
     solver.close()
     return best
+
+
+def _pairs(problem: Problem) -> int:
+    """Return how many clauses keep towers and locations apart: the model grows as the third power of the locations."""
+    locations, towers = len(problem.posed.locations), len(bases(problem))
+    return towers * locations * (towers + locations) // 2
 
 
 class _Model:

@@ -7,6 +7,7 @@ decodes but here, one thread at a time. That costs nothing: msgspec holds the in
 
 from __future__ import annotations
 
+import os
 from threading import RLock
 from typing import Any, TypeVar, overload
 
@@ -14,6 +15,16 @@ import msgspec
 
 T = TypeVar("T")
 _TURN = RLock()
+
+
+def _anew() -> None:
+    """A process that was forked while another thread decoded would wait for that thread, which it has not."""
+    global _TURN
+    _TURN = RLock()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_anew)
 
 
 @overload
