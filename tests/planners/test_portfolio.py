@@ -114,11 +114,12 @@ def test_what_the_beam_found_and_proved_is_reported_at_once():
     assert result.lower_bound <= result.cost
 
 
+@pytest.mark.usefixtures("machine_code")
 def test_a_beam_that_left_nothing_out_proves_the_plan_under_its_own_name(monkeypatch):
     for method in ("light_search", "search", "precedence", "layered", "neighbourhoods"):
         monkeypatch.setattr(f"smash.planners.portfolio._Parts.{method}", lambda *_: None)
     instance = generate("multi", 6, buffers=0, seed=4)[0]
-    result = SmashPlanner().solve(instance, SolveOptions(topple=False), 20)
+    result = SmashPlanner().solve(instance, SolveOptions(topple=False), 60)
     assert (result.status, result.bound_origin) == ("optimal", "beam")
     assert result.cost == optimal_cost(instance, PlanOptions(topple=False))
 
