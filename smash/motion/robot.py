@@ -205,7 +205,7 @@ class Robot:
 
     def nearest(self, joints: Vector, reference: Vector) -> Vector:
         """The same posture with joints that turn more than once turned to the revolution nearest to `reference`."""
-        if not self.winding.any():
+        if not self.winds:
             return joints
         turns = 2 * np.pi * np.round((reference - joints) / (2 * np.pi))
         moved = np.where(self.winding, joints + turns, joints)
@@ -216,6 +216,11 @@ class Robot:
     def winding(self) -> NDArray[np.bool_]:
         """Which joints can turn by more than a revolution, shape (n,)."""
         return np.asarray(self.upper - self.lower > 2 * np.pi + 1e-6)
+
+    @cached_property
+    def winds(self) -> bool:
+        """Whether any joint can."""
+        return bool(self.winding.any())
 
     @cached_property
     def twist(self) -> int:
