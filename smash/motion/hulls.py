@@ -182,7 +182,8 @@ class HullChecker:
     def _name_contact(self, geometry: Any, results: Any, step: int) -> Contact:
         index = next(number for number, result in enumerate(results.collisionResults) if result.isCollision())
         pair = geometry.collisionPairs[index]
-        return Contact(*(self._say(geometry.geometryObjects[part]) for part in (pair.first, pair.second)), step)
+        part, other = (self._say(geometry.geometryObjects[number]) for number in (pair.first, pair.second))
+        return Contact(part, other, step)
 
     def _say(self, part: Any) -> str:
         name = str(part.name)

@@ -416,7 +416,8 @@ def step_free(
     travel = np.sum(change * reach)
     wrist_travel = np.sum(change[forearm:] * reach[forearm:])
     outside, wrist = max(outside, smallest), max(wrist, smallest)
-    return min(outside / (travel + outside * total), wrist / (wrist_travel + wrist * total))
+    share: float = min(outside / (travel + outside * total), wrist / (wrist_travel + wrist * total))
+    return share
 
 
 @compiled
