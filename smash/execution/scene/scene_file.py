@@ -128,7 +128,7 @@ def scene_document(path: str | os.PathLike[str]) -> Any:
     Raises:
         MalformedFile: where it cannot be read, or is neither TOML nor JSON, as its name says.
     """
-    where, content = os.fspath(path), read_bytes(path)
+    where, content = os.fspath(path), read_bytes(path, "scene files")
     return parse_toml(content, where) if where.endswith(".toml") else parse_json(content, where)
 
 

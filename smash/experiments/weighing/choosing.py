@@ -14,6 +14,7 @@ from smash.forecast.model import OutcomeModel
 from smash.forecast.robust import least_risk
 from smash.forecast.search import Candidate, faster, neighbours
 from smash.planners.protocol import ACTIONS
+from smash.problem.errors import Unsupported
 from smash.problem.extras import EXECUTION, MissingExtra, is_there
 from smash.problem.model import Action
 from smash.problem.words import counted
@@ -126,7 +127,11 @@ class _Choosing:
         return self.started - self.question.spent
 
     def fastest(self) -> Choice:
-        """Return the plan that takes the least time."""
+        """Return the plan that takes the least time.
+
+        Raises:
+            Unsupported: where the scene has no room for any plan that was found.
+        """
         starts, job = self.question.starts, self.question.job
         candidates = faster(
             self.forecaster,
@@ -135,7 +140,12 @@ class _Choosing:
             until=self._begun + ANNEALED * job.budget,
             stopped=self.stopped,
         )
-        given = [Candidate(start, self.forecaster.of(start)) for start in starts]
+        misfits = [self.forecaster.misfit(start) for start in starts]
+        given = [
+            Candidate(s, self.forecaster.of(s)) for s, misfit in zip(starts, misfits, strict=True) if misfit is None
+        ]
+        if not given and not candidates:
+            raise Unsupported(f"expected times and risk: no plan was found that fits; one has {misfits[0]}")
         chosen, how = self._rehearsed([*given, *candidates])
         details: dict[str, object] = {"weighed": how}
         if how == MODEL_ALONE:
@@ -153,7 +163,10 @@ class _Choosing:
             return Choice(actions, monotonic() - self.started, {"risk": risk, "note": note})
         found = least_risk(self.forecaster, actions, self._begun + self.question.job.budget, self.stopped)
         details = {**self._weighed_seconds(), "risk": found.risk, "risk_before": risk}
-        if not found.exact:
+        misfit = self.forecaster.misfit(found.actions)
+        if misfit is not None:
+            details["note"] = f"no plan of this cost was found that fits the scene; this one has {misfit}"
+        elif not found.exact:
             details["note"] = "not all optimal plans could be looked at: there may be one of less risk"
         return Choice(found.actions, monotonic() - self.started, details)
 

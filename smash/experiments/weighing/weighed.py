@@ -85,7 +85,7 @@ def weighed(
         choose_by: chooses the plan; where None, it is chosen here.
 
     Raises:
-        Unsupported: where the outcome model does not know the instance.
+        Unsupported: where the outcome model does not know the instance, or its scene has no room for any plan found.
     """
     known = model or default_model()
     forecaster = Forecaster(job.problem, known)
