@@ -282,5 +282,5 @@ def test_a_goal_higher_than_any_pile_of_the_scene_is_unsupported_before_anything
     blocks = [f"b{number}" for number in range(13)]
     made = {"blocks": blocks, "stacks": ["s1", "s2"], "buffers": [], "start": {"s1": blocks[:6], "s2": blocks[6:]}}
     for goal in ({"s1": blocks}, OnGoal(dict(pairwise(blocks)))):
-        with pytest.raises(Unsupported, match="13 blocks in a pile; .* knows 12"):
+        with pytest.raises(Unsupported, match=r"13 blocks in a pile; .* knows 12"):
             forecaster(door.make_instance(**made, goal=goal))
