@@ -87,6 +87,7 @@ class Robot:
         name: What it is called.
         label: The same in records; a robot from a file of one's own has its content's mark behind the name.
         path: Its file.
+        files: That one and all others that it is made of: the hand's, both URDFs, meshes, the table of spheres.
         hand: The hand on its flange.
         base: The base link, whose frame is the world's.
         joints: Names of the joints in order, n of them.
@@ -117,6 +118,7 @@ class Robot:
     name: str
     label: str
     path: Path
+    files: tuple[Path, ...]
     hand: Hand
     base: str
     joints: tuple[str, ...]

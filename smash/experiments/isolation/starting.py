@@ -26,6 +26,7 @@ from typing import IO
 
 import psutil
 
+from smash.experiments.isolation.job import load
 from smash.experiments.isolation.leftovers import Left, clear_away
 from smash.experiments.isolation.server import keep_only, request_line, search_path, serve
 from smash.experiments.isolation.work import Work
@@ -155,17 +156,19 @@ class ForkServer:
         Raises:
             SmashError: where that does not work out.
         """
+        why = ""
         for _ in range(_ATTEMPTS):
             with self._lock:
                 guardian = self._asked(left)
-                if guardian is None:
+                if isinstance(guardian, str):
+                    why = guardian
                     self._drop(patience=0.0)
                     continue
             with suppress(BrokenPipeError):
                 guardian.stdin.write(request_line(job, left.mark))
                 guardian.stdin.flush()
             return guardian
-        raise SmashError("no process can be started for a run: the process that starts them ends at once")
+        raise SmashError(f"no process can be started for a run, after {_ATTEMPTS} attempts: {why}")
 
     def close(self) -> None:
         """Have it end, which it does once its guardians have, and wait for that."""
@@ -179,8 +182,8 @@ class ForkServer:
             if self._process == guardian.server:
                 self._drop(patience=0.0)
 
-    def _asked(self, left: Left) -> Guardian | None:
-        """Return a guardian that waits for its job; None where the server is gone or stands still."""
+    def _asked(self, left: Left) -> Guardian | str:
+        """Return a guardian that waits for its job; why there is none, where the server is gone or says nothing."""
         server = self._running()
         (asked, stdin), (stdout, told), (status, telling) = os.pipe(), os.pipe(), os.pipe()
         try:
@@ -190,13 +193,16 @@ class ForkServer:
             sent = False
         for number in (asked, told, telling):
             os.close(number)
-        words = _line(status, _FORKING if self._has_forked else _STARTING) if sent else None
+        patience = _FORKING if self._has_forked else _STARTING
+        words = _line(status, patience) if sent else b""
         if words:
             self._has_forked = True
             return Guardian(stdin, stdout, status, int(words), self._process)
         for number in (stdin, stdout, status):
             os.close(number)
-        return None
+        if words is None:
+            return f"the process that starts them said nothing for {patience:g} s ({load()})"
+        return "the process that starts them ends at once"
 
     def _running(self) -> socket.socket:
         if self._socket is None or self._owner != os.getpid():
