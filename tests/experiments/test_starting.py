@@ -83,19 +83,27 @@ print(run_isolated(job()).outcome)
 """) == ["feasible"]
 
 
-def test_a_server_that_is_late_is_not_called_ended():
-    assert " ".join(
-        said("""
-starting._STARTING = 0.001
+LATE = """
+starting._STARTING = {seconds}
+starting._SPELLS = 1000
+starting._COMPUTES = {computes}
 try:
-    run_isolated(job())
+    print(run_isolated(job()).outcome)
 except smash.SmashError as error:
     print(error)
-""")
-    ).startswith(
-        "no process can be started for a run, after 3 attempts: "
-        "the process that starts them said nothing for 0.001 s (load "
+"""
+
+
+def test_a_server_that_is_late_and_stands_still_is_not_called_ended():
+    assert re.fullmatch(
+        r"no process can be started for a run, after 3 attempts: "
+        r"the process that starts them said nothing for 0\.\d s \(load \d+\.\d on \d+ processors?\)",
+        " ".join(said(LATE.format(seconds=0.001, computes=1e9))),
     )
+
+
+def test_a_server_that_is_late_and_computes_is_waited_for():
+    assert said(LATE.format(seconds=0.05, computes=0.0)) == ["feasible"]
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="copies itself on Linux alone")
