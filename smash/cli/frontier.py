@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from smash.cli.choices import budget_option
+from smash.cli.shown_tables import console
 from smash.experiments.studies.frontier import FrontierPoint, fewest_buffers, frontier
 from smash.planners.registry import DEFAULT, get_planner
 from smash.problem.errors import MalformedFile
@@ -55,20 +56,16 @@ def command(
         require("smash frontier --out", "matplotlib")
     solver = get_planner(planner)
     chosen = [read_instance(problem)] if Path(problem).is_file() else read_suite(problem)[:instances]
-    console = Console(stderr=True)
     points: list[FrontierPoint] = []
-    with console.status("solving") as status:
+    with Console(stderr=True).status("solving") as status:
         for number, instance in enumerate(chosen, start=1):
             for point in frontier(instance, solver, most, budget, max_topple):
                 points.append(point)
                 status.update(f"{number} of {len(chosen)} instances, {len(points)} solves done")
-    output = Console()
-    if not output.is_terminal:
-        output.width = 120
     if not points:
         raise MalformedFile(problem, f"more than {most} buffers hold blocks at the start")
     for table in _tables(points, most) if len(chosen) > 1 else _instance_tables(points):
-        output.print(table)
+        console().print(table)
     if out is not None:
         _write(points, problem, out)
 

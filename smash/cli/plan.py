@@ -207,6 +207,6 @@ def _progress(planner: str) -> Iterator[OnIncumbent | None]:
     with Console(stderr=True).status(f"{escape(planner)}: no plan yet") as status:
 
         def tell(seconds: float, cost: int, actions: Sequence[Action]) -> None:
-            status.update(f"{escape(planner)}: cost {cost} after {seconds:.2f} s")
+            status.update(f"{escape(planner)}: cost {cost} after {seconds:.3g} s")
 
         yield tell

@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+from shutil import get_terminal_size
+from textwrap import wrap
+
 import click
 
 from smash.planners.registry import get_planner, planner_names
 from smash.problem.errors import Unsupported
 from smash.problem.words import one_line
+
+UNBROKEN = 10_000
+"""Columns of what is no terminal: a line a planner."""
+NARROWEST = 30
+"""Fewest columns of what a planner is, beside its name."""
 
 
 @click.command("planners")
@@ -31,5 +39,8 @@ def command() -> None:
             )
         )
     widths = [max(len(row[column]) for row in rows) for column in range(3)]
+    before = sum(widths) + 2 * len(widths)
+    room = get_terminal_size(fallback=(UNBROKEN, 0)).columns - before
     for row in rows:
-        click.echo("  ".join([*(cell.ljust(width) for cell, width in zip(row, widths, strict=False)), row[3]]))
+        first = "".join(f"{cell:<{width}}  " for cell, width in zip(row, widths, strict=False))
+        click.echo(first + f"\n{' ' * before}".join(wrap(row[3], max(room, NARROWEST))))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from smash.cli.shown_tables import console
 from smash.problem.errors import MalformedFile
 from smash.problem.extras import TABLES, require
 from smash.problem.words import one_line, visible
@@ -100,20 +101,16 @@ def _planned(results: Path, given: Path | None, records: Sequence[RunRecord]) ->
 
 
 def _show(checks: Sequence[Check]) -> None:
-    from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
-    console = Console()
-    if not console.is_terminal:
-        console.width = 120
     table = Table("check", "", "found")
     for check in checks:
         mark = Text(str(len(check.findings)), style="red") if check.findings else Text("well", style="green")
         if check.answer.startswith("not known"):
             mark = Text("?", style="yellow")
         table.add_row(Text(check.question), mark, Text(visible(check.answer)))
-    console.print(table)
+    console().print(table)
 
 
 @command.command("export", short_help="runs, incumbents and steps as Parquet and CSV")

@@ -12,6 +12,7 @@ from time import monotonic
 import click
 
 import smash
+from smash.cli.shown_tables import console
 from smash.cli.signals import stopped_by_signals
 from smash.experiments.reproduction.manifest import write_manifest
 from smash.experiments.reproduction.reproduce import Planned, Reproduction, StageRecord, last_line
@@ -80,13 +81,9 @@ def command(
 
 def _show(reproduction: Reproduction, planned: Sequence[Planned]) -> None:
     """Say what there is to do and how long it takes on 2 cores."""
-    from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
-    console = Console()
-    if not console.is_terminal:
-        console.width = 120
     left = [entry for entry in planned if entry.plan in LEFT]
     total = span(60 * sum(entry.stage.minutes for entry in left))
     words = f"{len(left)} of {len(planned)} stages to do, about {total} on 2 cores" if left else "nothing to do"
@@ -97,7 +94,7 @@ def _show(reproduction: Reproduction, planned: Sequence[Planned]) -> None:
         table.add_row(
             *(Text(visible(cell)) for cell in (entry.stage.name, entry.stage.about, took, entry.plan, entry.why))
         )
-    console.print(table)
+    console().print(table)
 
 
 class _Progress:

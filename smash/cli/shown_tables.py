@@ -9,10 +9,21 @@ from smash.problem.words import visible
 
 if TYPE_CHECKING:
     import pandas as pd
+    from rich.console import Console
     from rich.table import Table
 
 WIDE = 120
 """Columns of what is no terminal, unless COLUMNS says another number."""
+
+
+def console() -> Console:
+    """Return standard output as wide as the terminal, as COLUMNS says, or as `WIDE` where neither tells."""
+    from rich.console import Console
+
+    output = Console()
+    if not output.is_terminal and "COLUMNS" not in os.environ:
+        output.width = WIDE
+    return output
 
 
 def show(rows: pd.DataFrame, title: str) -> None:
@@ -22,23 +33,20 @@ def show(rows: pd.DataFrame, title: str) -> None:
         rows: what to print.
         title: stands above.
     """
-    from rich.console import Console
     from rich.measure import Measurement
 
-    console = Console()
-    if not console.is_terminal and "COLUMNS" not in os.environ:
-        console.width = WIDE
+    output = console()
     names = list(range(rows.shape[1]))
     parts: list[list[int]] = [names[:1]]
     for column in names[1:]:
         wider = [*parts[-1], column]
-        needs = Measurement.get(console, console.options.update(width=10_000), _table(rows.iloc[:, wider], "")).maximum
-        if needs > console.width and len(parts[-1]) > 1:
+        needs = Measurement.get(output, output.options.update(width=10_000), _table(rows.iloc[:, wider], "")).maximum
+        if needs > output.width and len(parts[-1]) > 1:
             parts.append([0, column])
         else:
             parts[-1] = wider
     for number, part in enumerate(parts):
-        console.print(_table(rows.iloc[:, part], f"{title}, continued" if number else title))
+        output.print(_table(rows.iloc[:, part], f"{title}, continued" if number else title))
 
 
 def _table(rows: pd.DataFrame, title: str) -> Table:

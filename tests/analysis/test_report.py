@@ -3,9 +3,11 @@
 import json
 import re
 
+import pandas as pd
 import pytest
-from smash_analysis.report.grids import ablation_grids
-from smash_analysis.report.page import make
+from smash_analysis.report.appendix import robot_given
+from smash_analysis.report.grids import ablation_grids, coverage_grids
+from smash_analysis.report.page import make, prose
 from smash_analysis.report.pictures import scenes
 from smash_analysis.report.sources import find_sources
 
@@ -55,6 +57,22 @@ def test_the_overview_says_what_the_records_say(report):
     assert "No two planners contradict each other." in page
 
 
+@pytest.mark.parametrize(("label", "given"), [("ur5", "ur5"), ("my-arm-0a1b2c3d", "my-arm.toml")])
+def test_a_robot_is_given_as_it_can_be_typed(label, given):
+    assert robot_given(label) == given
+
+
+def test_code_in_a_sentence_is_code_and_the_rest_is_text():
+    assert prose("`make <x>` & more") == "<code>make &lt;x&gt;</code> &amp; more"
+
+
+def test_sets_stand_in_one_order_in_every_variant():
+    rows = [("p", suite, variant, True, True) for suite, variant in (("a", "topple"), ("b", "no"), ("a", "no"))]
+    runs = pd.DataFrame(rows, columns=["label", "suite", "variant", "solved", "proven"])
+    grids = coverage_grids([], range(3), runs).grids
+    assert [grid.columns for grid in grids] == [["a"], ["a"], ["a", "b"], ["a", "b"]]
+
+
 def test_a_cell_of_the_heatmap_holds_the_readings_at_its_budget():
     runs = small_sweep()
     block = next(block for block in ablation_grids(runs) if block.title == "p & q on multi-9")
@@ -80,6 +98,7 @@ def test_parts_are_written_for_paper_too(report):
     assert {"first/first-topple-effect.md", "first/first-topple-effect.tex", "first/first-anytime.pdf"} <= parts
     latex = (report.parent / "parts" / "report.tex").read_text(encoding="utf-8")
     assert r"\end{document}" in latex
+    assert ">TEX, one column</a>" in report.read_text(encoding="utf-8")
     assert "](first/first-anytime.png)" in (report.parent / "parts" / "report.md").read_text(encoding="utf-8")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
@@ -87,7 +88,7 @@ def commands(source: Source) -> list[str]:
     path = shlex.quote(f"again/{source.name}")
     lines: list[str] = []
     engine = f" --engine {source.engine}" if source.engine else ""
-    engine += f" --robot {source.robot}" if source.robot else ""
+    engine += f" --robot {shlex.quote(robot_given(source.robot))}" if source.robot else ""
     if source.runs:
         lines += [_runs(source, path), f"smash records check {path}"]
     if source.episodes:
@@ -104,6 +105,14 @@ def commands(source: Source) -> list[str]:
         )
     lines += [f"python -m smash_analysis.{module} {path}    # {words}" for module, words in _modules(source)]
     return lines
+
+
+def robot_given(label: str) -> str:
+    """Return what `--robot` takes for the robot of a record: the name of a shipped one, else of a file of one's own.
+
+    The label of such a file's robot ends with the mark of its content (`smash.motion.robot.Robot.label`).
+    """
+    return re.sub(r"-[0-9a-f]{8}$", ".toml", label)
 
 
 def _episodes(records: Sequence[EpisodeRecord], command: str, engine: str) -> Iterator[str]:

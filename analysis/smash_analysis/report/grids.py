@@ -206,18 +206,26 @@ def coverage_grids(records: list[RunRecord], kept: Sequence[int], runs: pd.DataF
         runs: `compared` table of the runs at the largest budget.
     """
     table = runs.assign(run=list(kept))
+    suites = list(dict.fromkeys(table["suite"]))
     grids = [
-        _coverage_grid(mine, column, f"{words}, {variant_words(str(variant))}")
+        _coverage_grid(mine, suites, column, f"{words}, {variant_words(str(variant))}")
         for variant, mine in table.groupby("variant", sort=False)
         for column, words in (("solved", "with a plan"), ("proven", "proven optimal"))
     ]
     return GridBlock("coverage-table", "Who answers what", "runs", grids, _coverage_frame(table))
 
 
-def _coverage_grid(table: pd.DataFrame, column: str, words: str) -> Grid:
-    """Return planner x suite of one variant: in how many runs `column` holds, which is `words`."""
+def _coverage_grid(table: pd.DataFrame, order: Sequence[str], column: str, words: str) -> Grid:
+    """Return planner x suite (those of the table, in `order`) of one variant: in how many runs `column` holds.
+
+    Args:
+        table: runs of the variant.
+        order: suites of all variants.
+        column: what is counted.
+        words: the same in words.
+    """
     shade = Shades(SUCCESS_COLOURS, 0, 1)
-    labels, suites = list(dict.fromkeys(table["label"])), list(dict.fromkeys(table["suite"]))
+    labels, suites = list(dict.fromkeys(table["label"])), [suite for suite in order if (table["suite"] == suite).any()]
     groups = dict(list(table.groupby(["label", "suite"])))
 
     def cell(label: str, suite: str) -> Cell | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -117,7 +118,7 @@ def _shown(
 
 
 def _block(block: Block, name: str, files: list[Path], behind: Behind, section_slug: str, out: Path) -> Shown:
-    links = [(file.suffix[1:].upper(), relative_link(str(file), out)) for file in files]
+    links = [(_kind(file), relative_link(str(file), out)) for file in files]
     shown = Shown(block, name, links)
     if isinstance(block, GridBlock):
         shown.numbers = [_numbers(grid, behind, f"{section_slug}/{block.store}") for grid in block.grids]
@@ -135,6 +136,12 @@ def _block(block: Block, name: str, files: list[Path], behind: Behind, section_s
     return shown
 
 
+def _kind(file: Path) -> str:
+    """Return what a file's link is called: its ending, and the width where there are two (`tables.latex`)."""
+    kind = file.suffix[1:].upper()
+    return f"{kind}, one column" if file.stem.endswith("-column") else kind
+
+
 def _numbers(grid: Grid, behind: Behind, store: str) -> list[list[int | None]]:
     number = behind.grid(store, grid.extra)
     return [[None if cell is None else behind.cell(number, cell.entries) for cell in row] for row in grid.cells]
@@ -150,6 +157,7 @@ def _render(results: Path, out: Path, sections: list[ShownSection], behind: Behi
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["prose"] = prose
     template = environment.get_template("page.html")
     return template.render(
         title=results.resolve().name or "results",
@@ -168,6 +176,13 @@ def _totals(sections: list[ShownSection]) -> Iterator[tuple[str, str]]:
         count = sum(len(store.rows) for name, store in stores if name == kind)
         if count:
             yield f"{count:,}", words
+
+
+def prose(text: str) -> str:
+    """Return a sentence as HTML, with what stands between backticks as code; all else in it is text."""
+    from markupsafe import Markup, escape
+
+    return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(text))))
 
 
 def sample(curve: Curve) -> tuple[str, str]:
