@@ -44,6 +44,8 @@ def test_points_and_pictures_are_written(tmp_path):
     result = CliRunner().invoke(command, ["multi-4", "--instances", "3", "--most", "2", "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
     with (tmp_path / "frontier.csv").open() as file:
-        assert len(list(csv.DictReader(file))) == 3 * 3 * 2
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 3 * 3 * 2
+    assert all(float(row["cpu_seconds"]) >= 0.0 for row in rows)
     assert (tmp_path / "frontier.png").stat().st_size > 5000
     assert (tmp_path / "frontier.pdf").stat().st_size > 2000
