@@ -101,6 +101,13 @@ def fail(message: str, code: int) -> NoReturn:
 
 
 def _prepare_streams() -> None:
+    """Have three streams, whatever the caller has closed: no file that is opened later may take the place of one."""
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
+            setattr(sys, name, open(number, "w" if number else "r", encoding="utf-8", closefd=False))  # noqa: SIM115 - until the end
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
@@ -111,7 +118,7 @@ def _prepare_streams() -> None:
 def _fail_unforeseen(error: Exception) -> NoReturn:
     """End with one line on what no command foresaw: a file that the system refuses, a missing extra, or a defect."""
     if isinstance(error, OSError):
-        fail(f"{error.filename}: {error.strerror}" if error.filename is not None else str(error), 2)
+        fail(f"{error.filename}: {error.strerror}" if error.filename is not None else error.strerror or str(error), 2)
     missing = missing_extra(error, "this command")
     if missing is not None:
         fail(str(missing), missing.exit_code)

@@ -25,8 +25,8 @@ without_option = click.option(
     help="An aggregating action of the instance that plans may not use; may be given twice.",
 )
 
-PACE = click.FloatRange(0.0, 1.0, min_open=True)
-"""The type of options that take a share of the arm's limits."""
+PACE = click.FloatRange(0.01, 1.0)
+"""The type of options that take a share of the arm's limits: from `smash.execution.scene.tabletop.SLOWEST` on."""
 noise_option = click.option(
     "--noise",
     metavar="KIND=AMOUNT,…",

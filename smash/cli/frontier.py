@@ -16,6 +16,7 @@ from smash.experiments.studies.frontier import FrontierPoint, fewest_buffers, fr
 from smash.planners.registry import DEFAULT, get_planner
 from smash.problem.errors import MalformedFile
 from smash.problem.extras import require
+from smash.problem.files.documents import replacing
 from smash.problem.files.instances import read_instance
 from smash.problem.sets.suites import read_suite
 from smash.problem.words import counted, visible
@@ -28,7 +29,9 @@ VARIANTS = ((False, "without topple"), (True, "with topple"))
 
 @click.command("frontier")
 @click.argument("problem", metavar="INSTANCE|SUITE")
-@click.option("--most", type=click.IntRange(min=0), default=12, show_default=True, metavar="B", help="Most buffers.")
+@click.option(
+    "--most", type=click.IntRange(0, 10_000), default=12, show_default=True, metavar="B", help="Most buffers."
+)
 @click.option("--planner", default=DEFAULT, show_default=True, metavar="NAME", help="What solves; it should prove.")
 @click.option("--max-topple", type=click.IntRange(min=1), metavar="M", help="At most M blocks in one topple.")
 @budget_option("of each solve")
@@ -127,11 +130,15 @@ def _write(points: list[FrontierPoint], title: str, out: Path) -> None:
 
     out.mkdir(parents=True, exist_ok=True)
     rows = [point.row() for point in points]
-    with (out / "frontier.csv").open("w", newline="", encoding="utf-8", errors="backslashreplace") as file:
+    with (
+        replacing(out / "frontier.csv") as whole,
+        whole.open("w", newline="", encoding="utf-8", errors="backslashreplace") as file,
+    ):
         writer = csv.DictWriter(file, rows[0])
         writer.writeheader()
         writer.writerows(rows)
     figure = frontier_figure(rows, Path(title).stem)
     for ending in ("png", "pdf"):
-        figure.savefig(out / f"frontier.{ending}", dpi=200)
+        with replacing(out / f"frontier.{ending}") as whole:
+            figure.savefig(whole, dpi=200)
     click.echo("\n".join(str(out / f"frontier.{ending}") for ending in ("csv", "png", "pdf")))

@@ -7,17 +7,19 @@ from pathlib import Path
 import click
 
 from smash.problem.files.instances import write_instance
-from smash.problem.sets.generators import BENCHMARKS, BUFFERS, STACKS, generate
+from smash.problem.sets.generators import BENCHMARKS, BUFFERS, MOST, STACKS, generate
 
 
 @click.command("generate")
 @click.argument("benchmark", type=click.Choice(sorted(BENCHMARKS)))
 @click.option(
-    "--blocks", type=click.IntRange(min=1), required=True, metavar="N", help="Blocks, one for every stack or more."
+    "--blocks", type=click.IntRange(1, MOST), required=True, metavar="N", help="Blocks, one for every stack or more."
 )
-@click.option("--stacks", type=click.IntRange(min=1), default=STACKS, show_default=True, metavar="N", help="Stacks.")
-@click.option("--buffers", type=click.IntRange(min=0), default=BUFFERS, show_default=True, metavar="B", help="Buffers.")
-@click.option("--count", type=click.IntRange(min=1), default=1, show_default=True, metavar="K", help="Instances.")
+@click.option("--stacks", type=click.IntRange(1, MOST), default=STACKS, show_default=True, metavar="N", help="Stacks.")
+@click.option(
+    "--buffers", type=click.IntRange(0, MOST), default=BUFFERS, show_default=True, metavar="B", help="Buffers."
+)
+@click.option("--count", type=click.IntRange(1, MOST), default=1, show_default=True, metavar="K", help="Instances.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, metavar="S", help="Random seed.")
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), required=True, help="Directory to write to.")
 def command(benchmark: str, blocks: int, stacks: int, buffers: int, count: int, seed: int, out: Path) -> None:

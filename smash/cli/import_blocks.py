@@ -16,6 +16,7 @@ from smash.problem.blocksworld.problem import BlocksProblem
 from smash.problem.blocksworld.world import MOVE
 from smash.problem.errors import Infeasible, MalformedFile, SmashError, Unsupported
 from smash.problem.files.instances import write_instance
+from smash.problem.sets.generators import MOST
 from smash.problem.words import counted, one_line
 
 FAILURES = ((MalformedFile, "malformed"), (Infeasible, "infeasible"), (Unsupported, "unsupported"))
@@ -29,8 +30,8 @@ FAILURES = ((MalformedFile, "malformed"), (Infeasible, "infeasible"), (Unsupport
     metavar="DOMAIN.pddl",
     help="Read predicates and actions by what this domain's actions do, not by their usual names.",
 )
-@click.option("--stacks", type=click.IntRange(min=1), metavar="N", help="Stacks (default: as many as blocks).")
-@click.option("--buffers", type=click.IntRange(min=0), default=0, show_default=True, metavar="N", help="Buffers.")
+@click.option("--stacks", type=click.IntRange(1, MOST), metavar="N", help="Stacks (default: as many as blocks).")
+@click.option("--buffers", type=click.IntRange(0, MOST), default=0, show_default=True, metavar="N", help="Buffers.")
 @click.option("--name", metavar="NAME", help="Name of the instance, where it is one (default: the problem's name).")
 @click.option(
     "--out",

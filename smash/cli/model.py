@@ -8,8 +8,8 @@ import click
 
 from smash.cli.choices import without_option
 from smash.planners.protocol import SolveOptions, plan_options, settings_of, why_refused
-from smash.planners.registry import get_planner
-from smash.problem.errors import Unsupported
+from smash.planners.registry import get_planner, why_unknown
+from smash.problem.errors import SmashError, Unsupported
 from smash.problem.files.instances import read_instance
 from smash.problem.problem import Problem
 
@@ -40,6 +40,8 @@ def command(
       smash model examples/figure1.json --planner smash-flow
       smash model examples/figure1.json --planner smash-layered --no-topple --out figure1.mps
     """
+    if warm_start is not None and (unknown := why_unknown(warm_start)) is not None:
+        raise SmashError(unknown)
     chosen = get_planner(planner)
     build = getattr(chosen, "build_model", None)
     if build is None:

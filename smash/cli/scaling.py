@@ -12,12 +12,14 @@ from smash.cli.sweep import installed_runs, run_all
 from smash.experiments.studies.scaling import LARGEST, SIZES, scaling_experiment, write_scaling_suites
 from smash.experiments.sweeps.experiment import INSTANCES
 from smash.experiments.sweeps.keep import keep
+from smash.planners.registry import why_unknown
+from smash.problem.errors import SmashError
 
 
 @click.command("scaling")
 @click.option("--planner", "planners", multiple=True, metavar="NAME", help="Repeatable (default: those that scale).")
 @click.option("--largest", type=click.IntRange(min=4), default=SIZES[-1][0], show_default=True, help="Most blocks.")
-@click.option("--count", type=click.IntRange(min=1), default=3, show_default=True, help="Instances a size.")
+@click.option("--count", type=click.IntRange(1, 1000), default=3, show_default=True, help="Instances a size.")
 @budget_option("of each run")
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Runs at a time.")
 @dask_option
@@ -44,6 +46,8 @@ def command(
       smash scaling --planner precedence --planner greedy --largest 100
       smash scaling --dask tcp://head:8786 --out runs/scaling
     """
+    for unknown in filter(None, map(why_unknown, planners)):
+        raise SmashError(unknown)
     sizes = write_scaling_suites(out / INSTANCES, largest, count, seed)
     experiment = scaling_experiment(sizes, planners or tuple(LARGEST), budget)
     base = out / INSTANCES

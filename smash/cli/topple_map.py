@@ -27,7 +27,9 @@ if TYPE_CHECKING:
 @click.option(
     "--most", type=click.IntRange(1, 9), default=9, show_default=True, metavar="M", help="1 to M blocks fall."
 )
-@click.option("--seeds", type=click.IntRange(min=1), default=4, show_default=True, metavar="N", help="Trials of each.")
+@click.option(
+    "--seeds", type=click.IntRange(1, 10_000), default=4, show_default=True, metavar="N", help="Trials of each."
+)
 @click.option(
     "--first-seed", type=click.IntRange(min=0), default=0, metavar="S", help="Seeds S, S + 1, … (default: 0)."
 )

@@ -142,7 +142,7 @@ def _chosen(instances: GivenInstance | Iterable[GivenInstance]) -> Sequence[Inst
     """Return the instances that are meant, each name once."""
     if isinstance(instances, str | os.PathLike):
         return read_suite(instances)
-    given = [instances] if isinstance(instances, Instance) else instances
+    given = instances if isinstance(instances, Iterable) else [instances]
     chosen = [given_instance(instance) for instance in given]
     if not chosen:
         raise SmashError("compare: no instance is given; at least one is needed")

@@ -9,6 +9,8 @@ from click.testing import CliRunner
 
 from smash.cli import COMMANDS, main
 from smash.cli import smash as command_group
+from smash.cli.choices import PACE
+from smash.execution.scene.tabletop import SLOWEST
 
 
 def smash(*arguments, cwd=None):
@@ -31,6 +33,8 @@ def smash(*arguments, cwd=None):
         ["generate", "multi", "--blocks", "2", "--out", "y"],
         ["generate", "circle", "--blocks", "5", "--out", "y"],
         ["generate", "multi", "--blocks", "5", "--out", "/proc/no/such"],
+        ["generate", "multi", "--blocks", "1000000000", "--out", "y"],
+        ["import-blocks", "x", "--stacks", "1000000000", "--out", "y"],
         ["frobnicate"],
     ],
 )
@@ -39,6 +43,21 @@ def test_bad_input_gets_one_line_and_exit_code_2(arguments, tmp_path):
     assert ended.returncode == 2
     assert ended.stderr.startswith("smash: ")
     assert ended.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("closed", ["<&-", ">&-", "2>&-", "<&- >&- 2>&-"])
+def test_a_stream_that_the_caller_has_closed_is_no_defect(tmp_path, closed):
+    (tmp_path / "made").mkdir()
+    words = [sys.executable, "-m", "smash", "generate", "multi", "--blocks", "3", "--out", "made"]
+    ended = subprocess.run(
+        ["sh", "-c", f'exec "$@" {closed}', "sh", *words], capture_output=True, text=True, cwd=tmp_path, timeout=110
+    )
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert len((tmp_path / "made" / "multi-3-000.json").read_text()) > 100
+
+
+def test_the_slowest_pace_is_that_of_scenes():
+    assert (PACE.min, PACE.max, PACE.min_open) == (SLOWEST, 1.0, False)
 
 
 def test_generated_files_are_the_same_for_the_same_seed(tmp_path):

@@ -36,6 +36,8 @@ def test_the_written_flow_model_has_the_optimum_of_figure_1(tmp_path, suffix):
         (["--planner", "greedy"], 6),
         (["--planner", "smash-flow", "--out", "x.txt"], 2),
         (["--planner", "nobody"], 2),
+        (["--warm-start", "nobody"], 2),
+        (["--planner", "smash-layered", "--out", "missing/x.lp"], 2),
     ],
 )
 def test_refusals_are_one_line(tmp_path, arguments, code):

@@ -43,8 +43,10 @@ def test_the_committed_sets_are_the_generated_ones():
     [
         (("circle", 4), {}, "no benchmark is called 'circle'; known: single, multi"),
         (("multi", 2), {}, "2 are too few for 3 stacks"),
-        (("multi", 4), {"stacks": 0}, "stacks: 0 is not allowed; whole numbers, 1 and more"),
-        (("multi", 4), {"buffers": -1}, "buffers: -1 is not allowed; whole numbers, 0 and more"),
+        (("multi", 4), {"stacks": 0}, "stacks: 0 is not allowed; whole numbers, 1 to 100000"),
+        (("multi", 10**9), {}, "blocks: 1000000000 is not allowed; whole numbers, 1 to 100000"),
+        (("multi", 4), {"count": 10**9}, "count: 1000000000 is not allowed; whole numbers, 0 to 100000"),
+        (("multi", 4), {"buffers": -1}, "buffers: -1 is not allowed; whole numbers, 0 to 100000"),
     ],
 )
 def test_what_cannot_be_generated_is_said(arguments, more, words):

@@ -42,6 +42,20 @@ OTHER = smash.make_instance(start={"s1": ["a", "b"]}, goal={"s1": ["b", "a"]}, b
             )
         ),
         lambda: smash.compare([INSTANCE], [None]),
+        lambda: smash.compare(3, ["greedy"]),
+        lambda: smash.write_instance(3, "x.json"),
+        lambda: smash.write_plan(None, "x.json"),
+        *(
+            lambda action=action: smash.check(INSTANCE, [action])
+            for action in (
+                smash.Topple("s1", "2"),
+                smash.Topple("s1", 2.0),
+                smash.Topple("s1", True),
+                smash.Topple("s1", float("nan")),
+                smash.Pick(None, "s1"),
+                smash.Place("a", object()),
+            )
+        ),
         lambda: smash.draw(OTHER, smash.plan(INSTANCE, "greedy", budget=1)),
     ],
 )

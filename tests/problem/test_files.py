@@ -3,6 +3,7 @@
 import copy
 import json
 import os
+import re
 from pathlib import Path
 from typing import Literal
 
@@ -16,7 +17,7 @@ from smash.experiments.sweeps.experiment import read_experiment
 from smash.motion.robots.files import read_robot_file
 from smash.problem import MalformedFile, read_instance, read_plan, write_instance
 from smash.problem.blocksworld.problem_file import read_blocksworld
-from smash.problem.files.documents import MOST_BYTES, convert, replacing
+from smash.problem.files.documents import MOST_BYTES, convert, replacing, write_text
 from smash.problem.files.instances import instance_document, instance_from_document
 from smash.problem.files.plans import plan_document, plan_from_document
 from smash.problem.sets.suites import SUITES, generated_names, made_again, read_suite
@@ -210,3 +211,23 @@ def test_files_that_are_too_long_are_refused_unread(tmp_path, kind, read, size):
             os.truncate(file.fileno(), size)
     with pytest.raises(MalformedFile, match=f"MiB are too much; {kind} of up to 16 MiB are read$"):
         read(path)
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_a_link_is_written_through_and_stays_a_link(tmp_path, there):
+    (tmp_path / "disk").mkdir()
+    target, link = tmp_path / "disk" / "plan.json", tmp_path / "link.json"
+    if there:
+        target.write_text("old")
+    link.symlink_to(target)
+    write_text(link, "new")
+    assert link.is_symlink()
+    assert target.read_text() == "new"
+    assert [entry.name for entry in target.parent.iterdir()] == ["plan.json"]
+
+
+def test_a_file_below_a_file_cannot_be_written_and_is_named_as_it_was_asked_for(tmp_path):
+    (tmp_path / "file").write_text("")
+    path = tmp_path / "file" / "plan.json"
+    with pytest.raises(MalformedFile, match=f"^{re.escape(str(path))}: cannot be written: Not a directory$"):
+        write_text(path, "new")

@@ -10,6 +10,7 @@ from smash.execution.actions.topple import strip
 from smash.execution.layout.conditions import fallen_cubes, falling
 from smash.execution.scene.tabletop import Slot, Tabletop
 from smash.motion.robots import load_robot
+from smash.problem.files.documents import replacing
 
 EDGE = 0.85
 """The picture ends here [m], or where the farthest strip does."""
@@ -62,7 +63,8 @@ def draw(tabletop: Tabletop, path: Path) -> None:
         ncols=3,
         frameon=False,
     )
-    figure.savefig(path, dpi=150)
+    with replacing(path) as whole:
+        figure.savefig(whole, dpi=150)
 
 
 def _fallen(tabletop: Tabletop) -> str:

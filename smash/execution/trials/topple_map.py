@@ -32,6 +32,7 @@ from smash.execution.trials.estimates import Estimates, Rate
 from smash.motion.poses import Vector
 from smash.problem.actions.topple import Topple
 from smash.problem.errors import ExecutionFailure
+from smash.problem.files.documents import replacing
 from smash.problem.making import make_instance
 from smash.problem.model import PositionsGoal
 from smash.problem.rules import Law
@@ -168,4 +169,5 @@ def draw(trials: Sequence[Trial], path: Path) -> None:
         "red: cannot be grasped from above; shaded: the strip of the first push; square: the pile",
         fontsize=8,
     )
-    figure.savefig(path, dpi=200)
+    with replacing(path) as whole:
+        figure.savefig(whole, dpi=200)

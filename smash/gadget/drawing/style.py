@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from smash.problem.errors import MalformedFile, SmashError
+from smash.problem.errors import SmashError
 from smash.problem.extras import require
+from smash.problem.files.documents import replacing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -53,7 +54,5 @@ def save(figure: Figure, path: Path) -> None:
         SmashError: where the suffix is none of these or the file cannot be written.
     """
     check_suffix(path)
-    try:
-        figure.savefig(path, dpi=200, bbox_inches="tight", pad_inches=0.12)
-    except OSError as error:
-        raise MalformedFile(str(path), f"cannot be written: {error.strerror}") from None
+    with replacing(path) as whole:
+        figure.savefig(whole, dpi=200, bbox_inches="tight", pad_inches=0.12)

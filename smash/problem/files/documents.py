@@ -7,7 +7,7 @@ import os
 import re
 import tempfile
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
 
@@ -139,17 +139,21 @@ def require_writable(*paths: Path | None) -> None:
 def replacing(path: Path) -> Iterator[Path]:
     """A name beside `path`, with its ending, for what shall be there whole or not at all.
 
+    A link stays one: the file that it leads to is replaced.
+
     Raises:
         MalformedFile: where it cannot be written.
     """
-    temporary = path.with_name(f".{os.getpid()}.part.{path.name}")
+    target = Path(os.path.realpath(path))
+    temporary = target.with_name(f".{os.getpid()}.part.{path.name}")
     try:
         yield temporary
-        temporary.replace(path)
+        temporary.replace(target)
     except OSError as error:
         raise MalformedFile(os.fspath(path), f"cannot be written: {error.strerror or error}") from None
     finally:
-        temporary.unlink(missing_ok=True)
+        with suppress(OSError):  # where its folder is none, it cannot be removed either
+            temporary.unlink(missing_ok=True)
 
 
 def convert(document: Any, kind: Any, where: str) -> Any:

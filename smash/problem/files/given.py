@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 
-from smash.problem.errors import SmashError
+from smash.problem.errors import MalformedFile, SmashError
 from smash.problem.files.instances import read_instance
-from smash.problem.files.plans import read_plan
+from smash.problem.files.plans import action_from_list, action_list, read_plan
 from smash.problem.model import Action, Aggregating, Instance, Pick, Place, PlanOptions
 from smash.problem.plan import Plan, check_plan
 from smash.problem.rules import Law, Verdict
@@ -47,6 +47,10 @@ def given_plan(given: GivenPlan, instance: Instance) -> Plan:
     for action in actions:
         if not isinstance(action, Pick | Place | Aggregating):
             raise SmashError(f"{action!r} is no action; a plan is a Plan, the path of a plan file or a list of actions")
+        try:
+            action_from_list(action_list(action), "plan")
+        except (MalformedFile, TypeError):
+            raise SmashError(f"{action!r} is no action; names are strings, and heights whole numbers") from None
     cost = Law(instance).check(actions).cost
     return Plan(instance.name, BY_HAND, PlanOptions(), "feasible", actions, stated_cost=cost)
 

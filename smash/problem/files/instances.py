@@ -16,7 +16,7 @@ import msgspec
 
 from smash.problem import arguments
 from smash.problem.costs import UNIT_COSTS, Costs
-from smash.problem.errors import MalformedFile
+from smash.problem.errors import MalformedFile, SmashError
 from smash.problem.files.checking import checked
 from smash.problem.files.documents import check_format, convert, one_key_a_line, parse_json, read_bytes, write_text
 from smash.problem.model import Carrier, Goal, Instance, OnGoal, PositionsGoal, StacksGoal, no_goal
@@ -195,5 +195,11 @@ def _addition_documents(instance: Instance) -> dict[str, Any]:
 
 
 def write_instance(instance: Instance, path: str | os.PathLike[str]) -> None:
-    """Write an instance file, byte for byte the same for equal instances."""
+    """Write an instance file, byte for byte the same for equal instances.
+
+    Raises:
+        SmashError: where it is no instance, or the file cannot be written.
+    """
+    if not isinstance(instance, Instance):
+        raise SmashError(f"{instance!r} is no instance")
     write_text(path, one_key_a_line(instance_document(instance)))

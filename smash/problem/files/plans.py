@@ -16,7 +16,7 @@ import msgspec
 
 from smash.problem import arguments
 from smash.problem.actions.registry import FAMILY, kind_of
-from smash.problem.errors import MalformedFile
+from smash.problem.errors import MalformedFile, SmashError
 from smash.problem.files.documents import check_format, convert, one_key_a_line, parse_json, read_bytes, write_text
 from smash.problem.model import Action, Aggregating, Pick, Place, PlanOptions
 from smash.problem.plan import STATUSES, Incumbent, Plan, Status
@@ -172,5 +172,11 @@ def plan_text(plan: Plan) -> str:
 
 
 def write_plan(plan: Plan, path: str | os.PathLike[str]) -> None:
-    """Write a plan file."""
+    """Write a plan file.
+
+    Raises:
+        SmashError: where it is no plan, or the file cannot be written.
+    """
+    if not isinstance(plan, Plan):
+        raise SmashError(f"{plan!r} is no plan")
     write_text(path, plan_text(plan))

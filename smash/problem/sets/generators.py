@@ -20,6 +20,8 @@ STACKS = 3
 """The paper's number of stacks."""
 BUFFERS = 12
 """The paper's largest number of buffers."""
+MOST = 100_000
+"""Most blocks, stacks, buffers or instances that are made by number: their files can still be read."""
 EXTRA = "g"
 """The single-goal benchmark's further location: empty at the start, the target's goal."""
 
@@ -93,19 +95,18 @@ def generate(
         seed: of the set.
 
     Raises:
-        SmashError: where there is no such benchmark, or a number is too small.
+        SmashError: where there is no such benchmark, or a number is too small or too large.
     """
     if kind not in BENCHMARKS:
         raise SmashError(f"no benchmark is called {kind!r}; known: {', '.join(BENCHMARKS)}")
-    least = (
+    for what, number, least in (
         ("blocks", blocks, 1),
         ("stacks", stacks, 1),
         ("buffers", buffers, 0),
         ("count", count, 0),
-        ("seed", seed, 0),
-    )
-    for what, number, allowed in least:
-        whole_number(what, number, allowed)
+    ):
+        whole_number(what, number, least, MOST)
+    whole_number("seed", seed, 0)
     if blocks < stacks:
         raise SmashError(f"blocks: {blocks} are too few for {stacks} stacks, none of which is empty")
     size = f"{blocks}" if stacks == STACKS else f"{blocks}x{stacks}"

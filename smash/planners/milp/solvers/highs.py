@@ -12,6 +12,7 @@ import numpy as np
 
 from smash.planners.milp.arrays import Floats, Milp, MilpResult, MilpStatus, OnSolution
 from smash.problem.errors import MalformedFile
+from smash.problem.files.documents import replacing
 
 LARGE = 100_000
 """Nonzeros from which on HiGHS may overlook its time limit for long."""
@@ -147,8 +148,10 @@ def write(model: Milp, path: Path) -> None:
     solver = _loaded(model)
     for column in range(model.columns):
         solver.passColName(column, model.name(column))
-    if solver.writeModel(str(path)) == highspy.HighsStatus.kError:
-        raise MalformedFile(str(path), "cannot be written")
+    with replacing(path) as whole:
+        whole.touch()  # HiGHS ends the process where it cannot open a file
+        if solver.writeModel(str(whole)) == highspy.HighsStatus.kError:
+            raise MalformedFile(str(path), "cannot be written")
 
 
 def _loaded(model: Milp) -> Any:
