@@ -89,7 +89,7 @@ def read_plan_file(path: Path, instance: Instance, problem: Path | None, domain:
         MalformedFile: where it is no plan.
         RefusedPlan: where it is wrong, with the step and the reason.
     """
-    content = read_bytes(path)
+    content = read_bytes(path, "plan files")
     if content.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{"):
         return PlanFile(plan_from_document(parse_json(content, str(path)), str(path)), ours=True)
     text = parse_plan(decoded(content, str(path)), str(path))

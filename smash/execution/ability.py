@@ -30,9 +30,10 @@ def require_able(
         places: The slots of locations and stations.
 
     Raises:
-        DoesNotFit: where a pile, or a station that is used, is out of reach.
+        DoesNotFit: where its hand does not hold a block, or a pile, or a station that is used, is out of reach.
         Unsupported: where what the hand carries is kept level, and the arm cannot do that.
     """
+    tabletop.require_held(robot.hand)
     for action in actions:
         motion = MOTIONS.get(type(action)) if isinstance(action, Aggregating) else None
         if motion is not None and motion.level and not robot.upright:

@@ -27,6 +27,7 @@ from smash.execution.scene.geometry import Geometry
 from smash.execution.stopwatch import Stopwatch
 from smash.motion.errors import NoMotion
 from smash.motion.move import Move
+from smash.motion.obstacles import Scene
 from smash.motion.poses import Vector
 from smash.problem.errors import ExecutionFailure, Unsupported
 from smash.problem.model import TABLE, Action, Aggregating, Pick, Place, State
@@ -133,10 +134,20 @@ class Grounder:
         """Of an action that begins nobody knows where: of a place the way down, of others nothing."""
         if not isinstance(action, Place):
             return Task(action, None)
-        return Task(action, None, self._landing(action, state, where, last, grasp))
+        return Task(action, None, self._landing(action, state, where, self.arm.around(where), last, grasp))
 
-    def _landing(self, action: Place, state: State, where: Geometry, last: Vector, grasp: Grasp) -> Approach:
+    def _landing(
+        self, action: Place, state: State, where: Geometry, scene: Scene, last: Vector, grasp: Grasp
+    ) -> Approach:
         """The way down to a place, which may lead beside it without the executor's knowing.
+
+        Args:
+            action: The action.
+            state: The law's state before it.
+            where: The poses that are known then.
+            scene: The same as obstacles.
+            last: Where the arm is, or was last when that was known [rad], shape (n,).
+            grasp: How it holds the block.
 
         Raises:
             NoIk, NoMotion: where there is none.
@@ -144,7 +155,7 @@ class Grounder:
         stand = self.stand(action.block, action.target, state, where)
         if self._astray is not None:
             stand = BlockPose(stand.position + np.append(self._astray(), 0.0), stand.rotation)
-        return self.pick_and_place.landing(last, action.block, stand, self.arm.around(where), grasp)
+        return self.pick_and_place.landing(last, action.block, stand, scene, grasp)
 
     def _height_unknown(self, action: Action, state: State, where: Geometry) -> bool:
         """Whether it is about a block of which nobody knows on which face it lies, or what stands on such a one."""
@@ -206,8 +217,9 @@ class Grounder:
                 segments, grasp = self.pick_and_place.pick(joints, block, pose, scene)
                 return Task(action, segments, anchor=pose.position, grasp=grasp)
             case Place(block, _):
-                way = approach or self._landing(action, state, where, joints, grasp)
-                return Task(action, self.pick_and_place.place(joints, block, way, self.arm.around(where)), way)
+                scene = self.arm.around(where)
+                way = approach or self._landing(action, state, where, scene, joints, grasp)
+                return Task(action, self.pick_and_place.place(joints, block, way, scene), way)
             case Aggregating():
                 motion = MOTIONS.get(type(action))
                 if motion is None:

@@ -12,6 +12,7 @@ from smash.problem.actions.topple import Topple
 from smash.problem.errors import Unsupported
 from smash.problem.model import TABLE, Action, Aggregating, Pick, Place, State
 from smash.problem.problem import Problem
+from smash.problem.words import counted
 
 INTO_OTHERS = 1.0
 """Risk of a topple among blocks that still lie from an earlier one of the same pile: it rams them, and no trial tells
@@ -132,6 +133,41 @@ class Forecaster:
             total += expected.seconds
             risk += expected.risk
         return Expected(total, risk)
+
+    def misfit(self, actions: Sequence[Action]) -> str | None:
+        """Return what of a legal plan the scene has no room for; None where it can be carried out there."""
+        state = State.start_of(self.problem.instance)
+        for action in actions:
+            if (reason := self.no_room(state, action)) is not None:
+                return reason
+            self.law.carry_out(state, action)
+        return None
+
+    def no_room(self, state: State, action: Action) -> str | None:
+        """Return why the scene has no room for a legal action, or None.
+
+        A stack without a topple direction is not toppled, a strip takes so many blocks, and a place a pile so high.
+
+        Args:
+            state: where it is done.
+            action: the action.
+        """
+        match action:
+            case Place(_, location):
+                spot, count = self.spots[location], len(state.piles[location]) + 1
+                room = self.model.highest if spot.highest is None else min(self.model.highest, spot.highest)
+                if count > room:
+                    return f"a pile of {count} at {location!r}; scene {self.model.scene!r} has room for {room}"
+            case Topple(location, height):
+                spot, falling = self.spots[location], len(state.piles[location]) - height + 1
+                if not spot.headings:
+                    return f"a topple at {location!r}; scene {self.model.scene!r} has no strip there"
+                if spot.falling is not None and falling > spot.falling:
+                    strip = f"scene {self.model.scene!r} has a strip for {spot.falling} there"
+                    return f"a topple of {counted(falling, 'block')} at {location!r}; {strip}"
+            case _:
+                pass
+        return None
 
     def steps(self, actions: Sequence[Action]) -> Iterator[Expected]:
         """Forecast a legal plan action by action."""

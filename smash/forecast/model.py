@@ -18,7 +18,7 @@ import msgspec
 
 from smash.problem.errors import MalformedFile, Unsupported
 from smash.problem.files.documents import check_format, convert, parse_json, read_bytes, write_text
-from smash.problem.model import Instance
+from smash.problem.model import Instance, OnGoal, PositionsGoal, StacksGoal
 
 MODEL_FORMAT: Final = "smash-outcome-model/1"
 DEFAULT_MODEL = "default-model.json"
@@ -37,12 +37,22 @@ Amount = Annotated[float, msgspec.Meta(ge=0.0, le=1e6)]
 Whole = Annotated[int, msgspec.Meta(ge=1, le=1000)]
 
 
-class Spot(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The place of a location: distance and bearing from the robot's base; headings of its topple directions."""
+class Spot(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
+    """The place of a location.
+
+    Attributes:
+        radius: distance from the robot's base.
+        bearing: from there.
+        headings: of its topple directions; none where it is not toppled.
+        highest: the most blocks of a pile that the place was made for; None where the scene says nothing of it.
+        falling: the most blocks that its strips were made for, the same.
+    """
 
     radius: Annotated[float, msgspec.Meta(gt=0.0, le=100.0)]
     bearing: Annotated[float, msgspec.Meta(ge=-10.0, le=10.0)]
     headings: tuple[float, ...] = ()
+    highest: Whole | None = None
+    falling: Whole | None = None
 
 
 class Landed(msgspec.Struct, frozen=True, array_like=True, forbid_unknown_fields=True):
@@ -133,7 +143,7 @@ class OutcomeModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_o
         for what, wanted, room in (
             ("stacks", len(instance.stacks), len(self.stacks)),
             ("buffers", len(instance.buffers), len(self.buffers)),
-            ("blocks in a pile", max((len(pile) for pile in instance.start.values()), default=0), self.highest),
+            ("blocks in a pile", _highest(instance), self.highest),
         ):
             if wanted > room:
                 raise Unsupported(
@@ -159,6 +169,19 @@ class OutcomeModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_o
             return abs(cell[1] - falling), (cell[0] == 1) != (height == 1), abs(cell[0] - height)
 
         return cells[min(cells, key=far)]
+
+
+def _highest(instance: Instance) -> int:
+    """Return how many blocks the highest pile of start and goal has."""
+    piles = list(instance.start.values())
+    match instance.goal:
+        case StacksGoal(stacks):
+            piles += stacks.values()
+        case PositionsGoal() as goal:
+            piles += goal.stacks().values()
+        case OnGoal() as goal:
+            piles += goal.towers()
+    return max(map(len, piles), default=0)
 
 
 @cache

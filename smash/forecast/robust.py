@@ -51,12 +51,13 @@ def least_risk(
 
     Args:
         forecaster: of a plain problem, whose hand is empty at the start.
-        plan: an optimal plan.
+        plan: an optimal plan; where the scene has no room for it, any other one is better.
         until: when to give up, by the monotonic clock [s].
         stopped: whether to give up at once.
     """
+    fits = forecaster.misfit(plan) is None
     known = LeastRisk(plan, forecaster.of(plan).risk, True)
-    if known.risk <= 0.0:
+    if fits and known.risk <= 0.0:
         return known
     search = _Layers(forecaster, len(plan))
     while search.left and not search.spent:
@@ -65,7 +66,7 @@ def least_risk(
         search.expand()
     found = search.best
     exact = not search.left
-    if found is None or found.risk >= known.risk:
+    if found is None or (fits and found.risk >= known.risk):
         return LeastRisk(known.actions, known.risk, exact)
     return LeastRisk(_way(found), found.risk, exact)
 
@@ -82,7 +83,7 @@ class _Layers:
         self._law = forecaster.law
         self._cost = cost
         self._misplaced = misplaced(forecaster)
-        self._alike = not near_buffers(forecaster)
+        self._alike = alike_buffers(forecaster) and not near_buffers(forecaster)
         begin = forecaster.begin()
         self._layers: list[dict[Hashable, _Node]] = [{} for _ in range(cost + 1)]
         self._layers[0][_key(begin)] = _Node(begin, 0.0, None, ())
@@ -116,10 +117,11 @@ class _Layers:
             cost = self._at + len(actions)
             if cost > self._cost:
                 continue
-            walk, risk = node.walk.copy(), node.risk
+            walk, risk, fits = node.walk.copy(), node.risk, True
             for action in actions:
+                fits = fits and self._forecaster.no_room(walk.state, action) is None
                 risk += self._forecaster.step(walk, action).risk
-            if cost + MOVE * self._misplaced(walk.state) > self._cost:
+            if not fits or cost + MOVE * self._misplaced(walk.state) > self._cost:
                 continue
             layer, key = self._layers[cost], _key(walk)
             other = layer.get(key)
@@ -142,6 +144,12 @@ class _Layers:
             empty += not state.piles[location]
             if location != source and (state.piles[location] or empty == 1 or not self._alike):
                 yield location
+
+
+def alike_buffers(forecaster: Forecaster) -> bool:
+    """Return whether every buffer takes a pile as high as every other one."""
+    spots = forecaster.spots
+    return len({spots[buffer].highest for buffer in forecaster.problem.instance.buffers}) <= 1
 
 
 def near_buffers(forecaster: Forecaster) -> bool:

@@ -3,6 +3,7 @@
 A plan is taken as what it moves where, in order: from where a block is picked follows from what was done before it, by
 the law. A step changes one entry: another order, another place to put a block aside, another cut, a topple more or
 fewer. What the law refuses, or what misses the goal, is no plan; of the others the forecast says how long they take.
+What the scene has no room for takes so long that it is left behind, and no plan with it is returned.
 """
 
 from __future__ import annotations
@@ -27,6 +28,8 @@ ALIKE = 3
 BEGINNING = 3
 HOT, COLD = 1.5, 0.05
 """Temperatures at its begin and end [s]."""
+NO_ROOM = 1e4
+"""Seconds of an action that the scene has no room for: more than any motion takes."""
 KEPT = 24
 """So many of the fastest plans are kept, for whoever can judge them better."""
 
@@ -59,11 +62,11 @@ def faster(
     until: float | None = None,
     stopped: Callable[[], bool] = lambda: False,
 ) -> list[Candidate]:
-    """Return plans that take little time, the fastest first; the starts are among what they are chosen from.
+    """Return plans that fit the scene and take little time, the fastest first; chosen from the starts, too.
 
     Args:
         forecaster: says what is expected of a plan.
-        starts: legal plans.
+        starts: legal plans; of those that the scene has no room for, plans that it has may come.
         seed: of what is drawn at random: the same seed gives the same plans where time allows all steps.
         steps: of each annealing.
         until: when to stop, by the monotonic clock [s].
@@ -75,10 +78,11 @@ def faster(
         now = monotonic()
         last = None if until is None else now + max(0.0, until - now) / (len(tasks) - number)
         actions = tuple(start)
-        found[actions] = forecaster.of(actions)
+        if forecaster.misfit(actions) is None:
+            found[actions] = forecaster.of(actions)
         annealing = _Annealing(forecaster, actions, Random(f"{seed} {number}"))
         for step, candidate in enumerate(annealing.walk(steps)):
-            if candidate is not None:
+            if candidate is not None and candidate.expected.seconds < NO_ROOM:
                 found[candidate.actions] = candidate.expected
             if step % 64 == 0:
                 if stopped() or (last is not None and monotonic() > last):
@@ -202,6 +206,8 @@ class _Annealing:
             for action in _actions(entry, walk.state):
                 if self._law.refusal(walk.state, action) is not None:
                     return None
+                if self._forecaster.no_room(walk.state, action) is not None:
+                    taken += NO_ROOM
                 expected = self._forecaster.step(walk, action)
                 taken, risk = taken + expected.seconds, risk + expected.risk
                 actions.append(action)

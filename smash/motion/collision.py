@@ -148,19 +148,29 @@ class CollisionChecker:
 
 def _hand_boxes(hand: Hand, state: HandState) -> kernel.Boxes:
     """Palm, left and right finger, and what they hold, as boxes in the tool frame."""
-    left = hand.finger + np.array([0.0, state.opening, 0.0])
+    boxes = _empty_hand(hand, state.opening)
+    if state.attached is None:
+        return boxes
+    load = state.attached
+    return kernel.Boxes(
+        np.concatenate([boxes.centres, load.translations]),
+        np.concatenate([boxes.half, load.half_extents]),
+        np.concatenate([boxes.axes, load.rotations]),
+    )
+
+
+@lru_cache(maxsize=64)
+def _empty_hand(hand: Hand, opening: float) -> kernel.Boxes:
+    """Palm, left and right finger, so far open [m], as boxes in the tool frame."""
+    left = hand.finger + np.array([0.0, opening, 0.0])
     right = left * np.array([1.0, -1.0, 1.0])
     corners = np.stack([hand.palm, left, right])
-    centres = corners.mean(axis=1) - hand.tool
-    half = np.abs(corners[:, 1] - corners[:, 0]) / 2
-    rotations = np.tile(np.eye(3), (3, 1, 1))
-    if state.attached is not None:
-        centres = np.vstack([centres, state.attached.translations])
-        half = np.vstack([half, state.attached.half_extents])
-        rotations = np.concatenate([rotations, state.attached.rotations])
-    return kernel.Boxes(*(np.ascontiguousarray(array) for array in (centres, half, rotations)))
+    return kernel.Boxes(
+        corners.mean(axis=1) - hand.tool, np.abs(corners[:, 1] - corners[:, 0]) / 2, np.tile(np.eye(3), (3, 1, 1))
+    )
 
 
+@lru_cache(maxsize=64)
 def _hand_pairs(robot: Robot, boxes: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Pairs of hand box and link that can meet: those near the base, and those with the forearm."""
     own, held = links_that_hand_meets(robot, covers=True)

@@ -392,52 +392,83 @@ def radii(body: Body) -> Array:
 
 
 @compiled
+def step_free(
+    begin: Array, end: Array, body: Body, outside: float, wrist: float, smallest: float, forearm: int
+) -> float:
+    """The share of the straight joint segment that the robot may move by before it is looked at again.
+
+    While the robot moves by sum |dq_j| (r_j + d), no point of it moves further, where r_j are the `radii` at the step's
+    beginning and d is the step itself, so a step within the slack cannot reach an obstacle. Where the slack is less,
+    steps of `smallest` [m] are taken.
+
+    Args:
+        begin: Where the segment begins [rad], (n,).
+        end: Where it ends [rad], (n,).
+        body: The robot where the step begins.
+        outside: The first of its `slacks` [m].
+        wrist: The second one [m].
+        smallest: [m].
+        forearm: The last link before the wrist.
+    """
+    change = np.abs(end - begin)
+    total = max(np.sum(change), 1e-9)
+    reach = radii(body)
+    travel = np.sum(change * reach)
+    wrist_travel = np.sum(change[forearm:] * reach[forearm:])
+    outside, wrist = max(outside, smallest), max(wrist, smallest)
+    share: float = min(outside / (travel + outside * total), wrist / (wrist_travel + wrist * total))
+    return share
+
+
+@compiled
 def motion_free(
     begin: Array, end: Array, smallest: float, arm: Arm, hand: Boxes, scene: Boxes, demands: Demands
 ) -> float:
     """How far along the straight joint segment the robot gets before something is in the way: 1 is all of it.
 
-    Steps are as long as the slack allows: while the robot moves by sum |dq_j| (r_j + d), no point of it moves further,
-    where r_j are the `radii` at the step's beginning and d is the step itself, so a step within the slack cannot reach
-    an obstacle. Where the slack is less, steps of `smallest` [m] are taken.
+    The segment's end itself is not looked at.
     """
-    change = np.abs(end - begin)
-    total = max(np.sum(change), 1e-9)
     done = 0.0
-    while True:
+    while done < 1.0:
         body = posture(arm, hand, begin + done * (end - begin))
         outside, wrist = slacks(arm, body, scene, demands)
         if outside <= 0.0 or wrist <= 0.0:
             return done
-        if done >= 1.0:
-            return 1.0
-        reach = radii(body)
-        travel = np.sum(change * reach)
-        wrist_travel = np.sum(change[arm.forearm :] * reach[arm.forearm :])
-        outside, wrist = max(outside, smallest), max(wrist, smallest)
-        step = min(outside / (travel + outside * total), wrist / (wrist_travel + wrist * total))
-        done = min(1.0, done + step)
+        done += step_free(begin, end, body, outside, wrist, smallest, arm.forearm)
+    return 1.0
 
 
 @compiled
-def motion_blocked_at_a_glance(begin: Array, end: Array, arm: Arm, hand: Boxes, scene: Boxes, demands: Demands) -> bool:
-    """Whether a few states of the segment, its end first, show that it is blocked: most blocked edges end here."""
-    if state_slack(end, arm, hand, scene, demands) <= 0.0:
-        return True
-    parts = 4 if np.sum(np.abs(end - begin)) > 0.4 else 1
-    for part in range(1, parts):
-        if state_slack(begin + part / parts * (end - begin), arm, hand, scene, demands) <= 0.0:
-            return True
+def blocked_at_a_glance(begin: Array, end: Array, arm: Arm, hand: Boxes, scene: Boxes, demands: Demands) -> bool:
+    """Whether a few states within the segment show that it is blocked, where it is long: most blocked ones end here."""
+    if np.sum(np.abs(end - begin)) > 0.4:
+        for part in range(1, 4):
+            if state_slack(begin + part / 4 * (end - begin), arm, hand, scene, demands) <= 0.0:
+                return True
     return False
 
 
 @compiled
 def polyline_free(waypoints: Array, smallest: float, arm: Arm, hand: Boxes, scene: Boxes, demands: Demands) -> bool:
-    """Whether all segments between consecutive waypoints [rad], (W, 7), are free."""
+    """Whether all segments between consecutive waypoints [rad], (W, 7), are free; no state is looked at twice."""
+    body = posture(arm, hand, waypoints[0])
+    outside, wrist = slacks(arm, body, scene, demands)
+    if outside <= 0.0 or wrist <= 0.0:
+        return False
     for row in range(waypoints.shape[0] - 1):
         begin, end = waypoints[row], waypoints[row + 1]
-        if motion_blocked_at_a_glance(begin, end, arm, hand, scene, demands):
+        ahead = posture(arm, hand, end)
+        outside_ahead, wrist_ahead = slacks(arm, ahead, scene, demands)
+        if outside_ahead <= 0.0 or wrist_ahead <= 0.0:
             return False
-        if motion_free(begin, end, smallest, arm, hand, scene, demands) < 1.0:
+        if blocked_at_a_glance(begin, end, arm, hand, scene, demands):
             return False
+        done = step_free(begin, end, body, outside, wrist, smallest, arm.forearm)
+        while done < 1.0:
+            body = posture(arm, hand, begin + done * (end - begin))
+            outside, wrist = slacks(arm, body, scene, demands)
+            if outside <= 0.0 or wrist <= 0.0:
+                return False
+            done += step_free(begin, end, body, outside, wrist, smallest, arm.forearm)
+        body, outside, wrist = ahead, outside_ahead, wrist_ahead
     return True

@@ -47,7 +47,7 @@ def inverse(
         if solution is None:
             continue
         solution = robot.nearest(solution, near)
-        if any(np.max(np.abs(solution - other)) < SAME_SOLUTION for other in found):
+        if any(np.abs(solution - other).max() < SAME_SOLUTION for other in found):
             continue
         found.append(solution)
         if len(found) >= count:
@@ -87,7 +87,7 @@ def along_line(
     joints, found = start, []
     for displacement in displacements:
         solution = descend(robot, beginning.moved(displacement), joints)
-        if solution is None or np.max(np.abs(solution - joints)) > largest_jump:
+        if solution is None or np.abs(solution - joints).max() > largest_jump:
             return None
         found.append(solution)
         joints = solution
@@ -138,9 +138,9 @@ def _bearing(robot: Robot, posture: Vector) -> float:
 
 def _wrist_turned(robot: Robot, joints: Vector, pose: ToolPose) -> Vector:
     """The configuration with the last joint such that the tool's x axis points as the pose's does, if it can."""
-    limited = np.clip(joints, robot.lower, robot.upper)
+    limited = np.minimum(np.maximum(joints, robot.lower), robot.upper)
     if robot.twist:
         wanted = robot.forward(limited).rotation.T @ pose.rotation[:, 0]
         angle = limited[-1] + robot.twist * float(np.arctan2(wanted[1], wanted[0]))
-        limited[-1] = np.clip((angle + np.pi) % (2 * np.pi) - np.pi, robot.lower[-1], robot.upper[-1])
+        limited[-1] = min(max((angle + np.pi) % (2 * np.pi) - np.pi, robot.lower[-1]), robot.upper[-1])
     return limited

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -55,12 +54,12 @@ class Path:
 
 def densify(waypoints: Waypoints, step: float) -> Waypoints:
     """The same joint polyline with no joint moving more than `step` [rad] between rows: (W, n) to (T, n)."""
-    pieces = [waypoints[:1]]
-    for begin, end in pairwise(waypoints):
-        count = max(1, int(np.ceil(float(np.max(np.abs(end - begin))) / step)))
-        fractions = np.arange(1, count + 1)[:, None] / count
-        pieces.append(begin + fractions * (end - begin))
-    return np.concatenate(pieces)
+    changes = np.diff(waypoints, axis=0)
+    counts = np.maximum(1, np.ceil(np.abs(changes).max(axis=1) / step)).astype(np.int64)
+    segments = np.repeat(np.arange(len(changes)), counts)
+    before = np.cumsum(counts) - counts
+    fractions = (np.arange(1, len(segments) + 1) - before[segments]) / counts[segments]
+    return np.concatenate([waypoints[:1], waypoints[segments] + fractions[:, None] * changes[segments]])
 
 
 def round_corners(waypoints: Waypoints, free: Callable[[Waypoints], bool]) -> Waypoints:

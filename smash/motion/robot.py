@@ -87,6 +87,7 @@ class Robot:
         name: What it is called.
         label: The same in records; a robot from a file of one's own has its content's mark behind the name.
         path: Its file.
+        files: That one and all others that it is made of: the hand's, both URDFs, meshes, the table of spheres.
         hand: The hand on its flange.
         base: The base link, whose frame is the world's.
         joints: Names of the joints in order, n of them.
@@ -117,6 +118,7 @@ class Robot:
     name: str
     label: str
     path: Path
+    files: tuple[Path, ...]
     hand: Hand
     base: str
     joints: tuple[str, ...]
@@ -205,7 +207,7 @@ class Robot:
 
     def nearest(self, joints: Vector, reference: Vector) -> Vector:
         """The same posture with joints that turn more than once turned to the revolution nearest to `reference`."""
-        if not self.winding.any():
+        if not self.winds:
             return joints
         turns = 2 * np.pi * np.round((reference - joints) / (2 * np.pi))
         moved = np.where(self.winding, joints + turns, joints)
@@ -216,6 +218,11 @@ class Robot:
     def winding(self) -> NDArray[np.bool_]:
         """Which joints can turn by more than a revolution, shape (n,)."""
         return np.asarray(self.upper - self.lower > 2 * np.pi + 1e-6)
+
+    @cached_property
+    def winds(self) -> bool:
+        """Whether any joint can."""
+        return bool(self.winding.any())
 
     @cached_property
     def twist(self) -> int:

@@ -19,6 +19,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from smash.motion.errors import NoMotion
+from smash.motion.kernel import Array, IntArray, compiled
+from smash.motion.parameterization import parameterized
 from smash.motion.paths import Path, Waypoints, densify
 from smash.motion.robot import Robot
 
@@ -81,15 +83,10 @@ class Trajectory:
             return np.repeat(self.positions, len(times), axis=0)
         clipped = np.clip(times, 0.0, self.duration)
         index = np.clip(np.searchsorted(self.times, clipped, side="right") - 1, 0, len(self.times) - 2)
-        span = (self.times[index + 1] - self.times[index])[:, None]
-        part = (clipped - self.times[index])[:, None] / span
+        span = self.times[index + 1] - self.times[index]
+        part = (clipped - self.times[index]) / span
         square, cube = part**2, part**3
-        return np.asarray(
-            (2 * cube - 3 * square + 1) * self.positions[index]
-            + (cube - 2 * square + part) * span * self.velocities[index]
-            + (3 * square - 2 * cube) * self.positions[index + 1]
-            + (cube - square) * span * self.velocities[index + 1]
-        )
+        return hermite(self.positions, self.velocities, index, span, part, square, cube)
 
     def reversed(self) -> Trajectory:
         """The same motion backwards: it keeps what this one keeps, and is as fast."""
@@ -103,6 +100,36 @@ class Trajectory:
         """Configurations every `step` [s] after the start, the end included: [rad], shape (N, n)."""
         count = max(1, int(np.ceil(self.duration / step - 1e-9)))
         return self.at(np.minimum(np.arange(1, count + 1) * step, self.duration))
+
+
+@compiled
+def hermite(
+    positions: Array, velocities: Array, index: IntArray, span: Array, part: Array, square: Array, cube: Array
+) -> Array:
+    """Cubic Hermite interpolation between knots [rad], shape (N, n).
+
+    Args:
+        positions: At the knots [rad], shape (T, n).
+        velocities: At the knots [rad/s], shape (T, n).
+        index: The knot before each moment, shape (N,).
+        span: From that knot to the next one [s], shape (N,).
+        part: The share of it that has passed, shape (N,).
+        square: Its square.
+        cube: Its cube.
+    """
+    between = np.empty((index.shape[0], positions.shape[1]))
+    for row in range(index.shape[0]):
+        here = index[row]
+        start, leave = 2 * cube[row] - 3 * square[row] + 1, (cube[row] - 2 * square[row] + part[row]) * span[row]
+        end, arrive = 3 * square[row] - 2 * cube[row], (cube[row] - square[row]) * span[row]
+        for joint in range(positions.shape[1]):
+            between[row, joint] = (
+                start * positions[here, joint]
+                + leave * velocities[here, joint]
+                + end * positions[here + 1, joint]
+                + arrive * velocities[here + 1, joint]
+            )
+    return between
 
 
 def time_path(robot: Robot, path: Path, pace: Pace = FREE) -> Trajectory:
@@ -201,7 +228,6 @@ def time_gently(robot: Robot, path: Path, length: float, speed: float, accelerat
 def _toppra(robot: Robot, waypoints: Waypoints, pace: Pace) -> Trajectory:
     # toppra loads a plotting library: a second that `smash plan` must not pay.
     import toppra
-    from toppra.algorithm import TOPPRA
     from toppra.constraint import JointVelocityConstraintVarying
 
     points = densify(waypoints, SPLINE_STEP)
@@ -215,14 +241,11 @@ def _toppra(robot: Robot, waypoints: Waypoints, pace: Pace) -> Trajectory:
             JointVelocityConstraintVarying(lambda s: _tool_limits(robot, spline(s), spline(s, 1), tool_speed))
         )
     grid = np.linspace(0.0, arc[-1], int(np.clip(2 * len(points), FEWEST_GRIDPOINTS, MOST_GRIDPOINTS)))
-    algorithm = TOPPRA(
-        constraints, spline, gridpoints=grid, parametrizer="ParametrizeConstAccel", solver_wrapper="seidel"
-    )
-    result = algorithm.compute_trajectory(0.0, 0.0)
-    if result is None:
+    fastest = parameterized(spline, grid, constraints)
+    if fastest is None:
         raise NoMotion("the path cannot be followed within the arm's velocity and acceleration limits")
-    times = np.append(np.arange(0.0, result.duration, KNOT_STEP), result.duration)
-    positions, velocities = result(times), result(times, 1)
+    times = np.append(np.arange(0.0, fastest.duration, KNOT_STEP), fastest.duration)
+    positions, velocities = fastest.at(times)
     positions[-1], velocities[-1] = waypoints[-1], 0.0
     return Trajectory(times, positions, velocities)
 

@@ -85,6 +85,7 @@ class SmashPlanner(MethodPlanner):
     budget_dependent: ClassVar[bool] = True  # its parts get shares of the budget
     gentle: ClassVar[bool] = True
     solvers: ClassVar[frozenset[str]] = frozenset(SOLVERS)
+    indexed: ClassVar[bool] = True  # its layered model
 
     def solve(
         self, instance: Instance, options: PlanOptions, budget: float, on_incumbent: OnIncumbent | None = None

@@ -1,5 +1,8 @@
 """What is planned before an episode, and what must wait until poses are revealed."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -130,3 +133,37 @@ def test_a_failure_of_planning_is_kept_for_its_turn(grounder):
     (task,) = grounder.ground([Pick("b", "s2")], Law(instance), where, READY)
     assert task.segments is None
     assert task.problem.failure == "IK"
+
+
+AFTER_WARM_UP = """
+import sys
+from numba.core.dispatcher import Dispatcher
+from smash.motion.errors import NoMotion
+from smash.motion.obstacles import Scene
+from tests.execution.test_grounding import SCENE, ArmMotions, Grounder, ground, swapped_plan
+
+def loaded():
+    compiled = [value for module in list(sys.modules.values()) for value in vars(module).values()
+                if isinstance(value, Dispatcher)]
+    return set(sys.modules), {function: len(function.signatures) for function in compiled}
+
+arm = ArmMotions(SCENE)
+arm.warm_up()
+before = loaded()
+ground(Grounder(arm), swapped_plan().actions)
+ready = arm.robot.ready
+try:
+    arm.planner.line(ready, (0.0, 0.0, 0.05), Scene.of_boxes(["b"], [arm.robot.forward(ready).position], 0.02))
+except NoMotion as failure:
+    print(failure)
+print(loaded() == before)
+"""
+
+
+@pytest.mark.slow
+def test_after_warming_up_nothing_is_loaded_or_compiled_any_more_where_an_obstacle_is_named_neither():
+    """Else the time of the first plan of a process would be its."""
+    ended = subprocess.run([sys.executable, "-c", AFTER_WARM_UP], capture_output=True, text=True, check=True)
+    blocked, same = ended.stdout.splitlines()
+    assert "block 'b'" in blocked
+    assert same == "True"

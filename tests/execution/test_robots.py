@@ -160,6 +160,13 @@ def test_a_named_block_that_a_hand_cannot_hold_is_named(tmp_path):
         scene.with_robot(str(path))
 
 
+def test_blocks_that_the_hand_cannot_hold_are_refused_where_it_is_used():
+    instance, plan = swapped_pair(), swapped_plan()
+    scene = dataclasses.replace(default_scene(), sizes={"b1": BlockSize(0.09, 0.045, 0.1)})
+    with pytest.raises(DoesNotFit, match=r"hand 'panda_hand' does not hold block 'b1' .* it is 0.09 m wide"):
+        Executor(instance, plan, scene, engine=engine_of(scene))
+
+
 def test_the_panda_s_hand_holds_whatever_a_scene_may_have():
     for footprint, height in product(FOOTPRINTS, HEIGHTS):
         assert unfit(BlockSize(footprint, height, 0.1), load_robot().hand) is None

@@ -1,5 +1,6 @@
 """How a guardian is started: by one fork server, a copy of the caller where that is there for one run alone."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -80,6 +81,44 @@ run_isolated(job())
 psutil.Process(shared_server(Job.loaded_by)._process).suspend()
 print(run_isolated(job()).outcome)
 """) == ["feasible"]
+
+
+LATE = """
+starting._STARTING = {seconds}
+starting._SPELLS = 1000
+starting._COMPUTES = {computes}
+try:
+    print(run_isolated(job()).outcome)
+except smash.SmashError as error:
+    print(error)
+"""
+
+
+def test_a_server_that_is_late_and_stands_still_is_not_called_ended():
+    assert re.fullmatch(
+        r"no process can be started for a run, after 3 attempts: "
+        r"the process that starts them said nothing for 0\.\d s \(load \d+\.\d on \d+ processors?\)",
+        " ".join(said(LATE.format(seconds=0.001, computes=1e9))),
+    )
+
+
+def test_a_server_that_is_late_and_computes_is_waited_for():
+    assert said(LATE.format(seconds=0.05, computes=0.0)) == ["feasible"]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="copies itself on Linux alone")
+def test_a_planner_that_is_not_ready_in_time_says_how_long_it_computed_and_how_busy_the_machine_is():
+    words = " ".join(
+        said("""
+from smash.experiments.isolation import guardian
+guardian.STARTUP_LIMIT = 0.0
+report = run_isolated(job(), for_this=True)
+print(report.outcome, report.reason)
+""")
+    )
+    assert re.fullmatch(
+        r"crashed not ready to plan after 0 s, \d+\.\d s of them computing \(load \d+\.\d on \d+ processors?\)", words
+    )
 
 
 def test_a_run_has_the_environment_the_folder_and_the_path_of_its_caller_at_that_time(tmp_path):

@@ -121,6 +121,14 @@ def test_robust_says_where_there_is_no_proof_and_leaves_the_planner_all_its_budg
     assert [part.budget for part in asked.jobs] == [2.0]
 
 
+@pytest.mark.parametrize("how", [{"planner": "greedy"}, {"topple": False}], ids=["no proof", "no risk"])
+def test_no_process_is_begun_where_no_ties_are_to_be_broken(instance, how):
+    asked = job(instance, "actions", robust=True, **how)
+    report = weighed(asked, Asked(), ELSEWHERE, choose_by=lambda question: pytest.fail("weighed"))
+    assert report.plan.details["risk"] >= 0.0
+    assert check_plan(instance, report.plan).accepted
+
+
 class Slow:
     """A planner that has a plan from its n-th run on."""
 

@@ -1,8 +1,10 @@
 """The outcome model as a file, what is expected of a plan, and plans that are chosen for it."""
 
 import json
+from itertools import pairwise
 from time import monotonic
 
+import msgspec
 import pytest
 from click.testing import CliRunner
 
@@ -16,7 +18,7 @@ from smash.forecast.search import faster
 from smash.problem.actions.topple import Topple
 from smash.problem.errors import MalformedFile, Unsupported
 from smash.problem.files.plans import plan_from_document
-from smash.problem.model import PlanOptions
+from smash.problem.model import OnGoal, Pick, Place, PlanOptions, State
 from smash.problem.problem import Problem
 
 FIGURE = "examples/figure1.json"
@@ -193,3 +195,92 @@ def test_the_door_takes_the_objective():
 def test_seconds_of_carriers_are_unsupported_before_anything_is_planned():
     ended = CliRunner().invoke(smash, ["plan", "examples/scoop-seconds.json", "--objective", "seconds"])
     assert isinstance(ended.exception, Unsupported)
+
+
+def narrow(stacks=None, buffers=None, **scene):
+    """The default scene's model whose stacks and buffers are made otherwise, and trouble costs nothing."""
+    model = msgspec.structs.replace(default_model(), trouble=0.0, **scene)
+    for group, change in (("stacks", stacks or {}), ("buffers", buffers or {})):
+        spots = tuple(msgspec.structs.replace(spot, **change) for spot in getattr(model, group))
+        model = msgspec.structs.replace(model, **{group: spots})
+    return model
+
+
+def carried_out(forecast, actions):
+    """Every action of a plan with the state that it is done in."""
+    state = State.start_of(forecast.problem.instance)
+    for action in actions:
+        yield action, state
+        forecast.law.carry_out(state, action)
+
+
+@pytest.mark.parametrize(
+    ("model", "fits"),
+    [
+        (narrow({"headings": ()}), lambda action, _: not isinstance(action, Topple)),
+        (
+            narrow({"falling": 2}),
+            lambda action, state: (
+                not isinstance(action, Topple) or len(state.piles[action.location]) - action.height < 2
+            ),
+        ),
+        (
+            narrow(buffers={"highest": 1}),
+            lambda action, state: (
+                not isinstance(action, Place) or action.target[0] != "u" or not state.piles[action.target]
+            ),
+        ),
+    ],
+    ids=["no strip", "short strips", "low buffers"],
+)
+def test_annealing_asks_nothing_that_the_scene_has_no_room_for(nine, model, fits):
+    forecast = Forecaster(Problem(nine, PlanOptions()), model)
+    starts = [door.plan(nine, budget=5, topple=topple).actions for topple in (True, False)]
+    assert any(forecast.misfit(start) is not None for start in starts)
+    found = faster(forecast, starts, steps=100)
+    assert len(found) > 1
+    for candidate in found:
+        assert forecast.misfit(candidate.actions) is None
+        assert all(fits(action, state) for action, state in carried_out(forecast, candidate.actions))
+
+
+def test_of_equal_plans_one_is_taken_that_the_scene_has_room_for():
+    instance = door.make_instance(
+        blocks=["a", "b", "c"],
+        stacks=["s1", "s2"],
+        buffers=["u1", "u2"],
+        start={"s1": ["a", "b", "c"]},
+        goal={"s2": ["a", "b", "c"]},
+    )
+    toppled = (Topple("s1", 1), *(step for block in "abc" for step in (Pick(block, "table"), Place(block, "s2"))))
+    without = (Topple("s1", 2), Pick("a", "s1"), Place("a", "s2"), *toppled[3:])
+    forecast = Forecaster(Problem(instance, PlanOptions()), narrow({"falling": 2}))
+    assert forecast.misfit(toppled) == "a topple of 3 blocks at 's1'; scene 'default' has a strip for 2 there"
+    assert forecast.misfit(without) is None
+    assert forecast.misfit(least_risk(forecast, toppled, monotonic() + 30).actions) is None
+
+
+@pytest.mark.usefixtures("forecast_alone")
+@pytest.mark.parametrize(
+    ("buffers", "said"), [(["u1"], ""), ([], "no plan was found that fits; one has a topple at 's1'; scene")]
+)
+def test_a_plan_for_seconds_topples_no_stack_without_a_strip(tmp_path, buffers, said):
+    pile = ["a", "b", "c"]
+    instance = door.make_instance(
+        blocks=pile, stacks=["s1", "s2"], buffers=buffers, start={"s1": pile}, goal={"s2": pile}
+    )
+    files = [tmp_path / name for name in ("instance.json", "model.json", "plan.json")]
+    door.write_instance(instance, files[0])
+    write_model(narrow({"headings": ()}), files[1])
+    seconds = ["--objective", "seconds", "--budget", "0.3", "--model", str(files[1]), "--out", str(files[2])]
+    ended = CliRunner().invoke(smash, ["plan", str(files[0]), *seconds])
+    assert isinstance(ended.exception, Unsupported) == (not files[2].exists()) == bool(said)
+    assert said in str(ended.exception)
+
+
+def test_a_goal_higher_than_any_pile_of_the_scene_is_unsupported_before_anything_is_planned():
+    blocks = [f"b{number}" for number in range(13)]
+    made = {"blocks": blocks, "stacks": ["s1", "s2"], "buffers": [], "start": {"s1": blocks[:6], "s2": blocks[6:]}}
+    for goal in ({"s1": blocks}, OnGoal(dict(pairwise(blocks)))):
+        with pytest.raises(Unsupported, match=r"13 blocks in a pile; .* knows 12"):
+            forecaster(door.make_instance(**made, goal=goal))

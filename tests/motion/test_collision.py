@@ -64,6 +64,18 @@ def test_a_segment_is_free_exactly_where_all_of_a_dense_sample_is():
     assert verdicts == {True, False}
 
 
+def test_a_polyline_is_free_exactly_where_each_of_its_segments_is():
+    checker, verdicts = CollisionChecker(PANDA, TOWERS, HAND), set()
+    generator = np.random.default_rng(4)
+    for start in configurations(150, 4):
+        corners = start + np.cumsum(generator.normal(0.0, 0.1, (4, PANDA.count)), axis=0)
+        verdict = checker.path_free(corners)
+        verdicts.add(verdict)
+        assert verdict == all(checker.segment_free(begin, end) for begin, end in pairwise(corners))
+        assert not verdict or all(checker.segment_reach(begin, end) == 1.0 for begin, end in pairwise(corners))
+    assert verdicts == {True, False}
+
+
 def test_blockers_are_named_and_ignored_blocks_are_not():
     block = Scene.of_boxes(["b"], [PANDA.forward(READY).position], 0.02)
     assert CollisionChecker(PANDA, block).blockers(READY) == ("block 'b'",)

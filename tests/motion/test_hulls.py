@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
+from smash.motion import hulls
 from smash.motion.hulls import CARRIED, HullChecker
 from smash.motion.kinematics import inverse
 from smash.motion.obstacles import Attached, HandState, Scene
 from smash.motion.poses import top_down
+from tests.motion.towers import tower_scene
 from tests.robots import PANDA, READY
 
 SIDE = 0.045
@@ -47,3 +49,17 @@ def test_what_is_carried_touches_what_the_hand_does_not():
 def test_a_block_around_the_hand_is_called_by_its_name(name):
     scene = Scene.of_boxes([name], [PANDA.forward(READY).position], 0.02)
     assert f"block {name!r}" in str(HullChecker(PANDA, scene).contact(READY))
+
+
+@pytest.mark.parametrize("hand", [HandState(0.03), HandState(SIDE / 2, Attached.cube(SIDE))])
+def test_what_the_spheres_leave_out_touches_nothing(hand, monkeypatch):
+    scene = tower_scene({-1.0: 3, 0.0: 9, 0.6: 5, 2.0: 1})
+    generator = np.random.default_rng(5)
+    starts = generator.uniform(PANDA.lower, PANDA.upper, (60, PANDA.count))
+    motions = [start + np.linspace(0.0, 0.5, 4)[:, None] * generator.normal(size=PANDA.count) for start in starts]
+    found = [HullChecker(PANDA, scene, hand).contact(motion) for motion in motions]
+    monkeypatch.setattr(hulls, "parts_near", lambda places, radii, pairs: np.ones(len(pairs), dtype=bool))
+    everything = lambda places, radii, parts, centres, half, axes: np.ones((len(centres), len(parts)), dtype=bool)  # noqa: E731
+    monkeypatch.setattr(hulls, "boxes_near", everything)
+    assert found == [HullChecker(PANDA, scene, hand).contact(motion) for motion in motions]
+    assert {None} < {contact and contact.other for contact in found}

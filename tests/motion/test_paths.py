@@ -31,6 +31,14 @@ def test_no_joint_moves_further_than_the_step_and_corners_are_kept(step):
     assert np.linalg.norm(np.diff(points, axis=0), axis=1).sum() == pytest.approx(2.0)
 
 
+def test_points_of_a_segment_are_evenly_spaced_and_one_point_stays_one():
+    points = densify(corner(1.0, 0.35), 0.3)
+    assert points[:, :2] == pytest.approx(
+        np.array([[0, 0], [0.25, 0], [0.5, 0], [0.75, 0], [1, 0], [1, 0.175], [1, 0.35]])
+    )
+    assert np.array_equal(densify(corner()[:1], 0.3), corner()[:1])
+
+
 def test_a_rounded_corner_touches_both_segments_at_the_same_distance_from_it():
     rounded = round_corners(corner(), lambda piece: True)
     room = 0.5  # half a segment, which is less than the longest blend

@@ -39,6 +39,30 @@ def test_the_panda_is_shipped_and_the_default():
     assert load_robot() is load_robot("panda") is PANDA
 
 
+@pytest.mark.parametrize("change", ["six.toml", "panda-hand.toml", "six.urdf", "six.csv", ".obj", "hand.urdf"])
+def test_a_robot_of_which_any_file_changed_is_another_one(tmp_path, change):
+    path = written(tmp_path)
+    before = load_robot(path)
+    assert load_robot(path) is before
+    changed = next(file for file in before.files if file.name.endswith(change))
+    with changed.open("ab") as file:
+        file.write(b"\n")
+    after = load_robot(path)
+    assert after is not before
+    assert after.label != before.label
+    assert load_robot(path) is after
+
+
+def test_a_robot_without_its_spheres_is_read_again_once_they_are_there(tmp_path):
+    path = written(tmp_path)
+    spheres = (tmp_path / "six.csv").read_text()
+    (tmp_path / "six.csv").unlink()
+    assert load_robot(path).spheres is not None
+    before = load_robot(path)
+    (tmp_path / "six.csv").write_text(spheres)
+    assert load_robot(path) is not before
+
+
 def test_one_urdf_has_the_arm_and_the_hand_in_the_order_of_their_files():
     urdf = ET.fromstring(PANDA.urdf)
     links = [link.get("name") for link in urdf.findall("link")]

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from scipy.interpolate import CubicHermiteSpline
 
 from smash.motion.paths import Path, round_corners
 from smash.motion.timing import EASED, Pace, eased, time_path, trapezoid
@@ -83,3 +84,10 @@ def test_a_trajectory_backwards_keeps_the_limits_and_passes_the_same_places():
     samples = np.vstack([rest[0], back.sample(step), rest[1]])
     for order, limit in ((1, PANDA.velocity * 1.01), (2, PANDA.acceleration * 1.02), (3, PANDA.jerk)):
         assert np.all(np.abs(np.diff(samples, order, axis=0)) / step**order <= limit)
+
+
+def test_between_its_knots_a_trajectory_is_their_cubic():
+    trajectory = time_path(PANDA, Path(CORNERS, "tree"))
+    moments = np.linspace(0.0, trajectory.duration, 77)
+    cubic = CubicHermiteSpline(trajectory.times, trajectory.positions, trajectory.velocities)
+    assert np.abs(trajectory.at(moments) - cubic(moments)).max() < 1e-12

@@ -1,7 +1,6 @@
 """Blocks-world problems from outside become instances with the classical costs, or one clear line."""
 
 import itertools
-import os
 import random
 from pathlib import Path
 
@@ -16,7 +15,6 @@ from smash.planners.precedence import PrecedencePlanner
 from smash.planners.protocol import SolveOptions
 from smash.problem import MalformedFile, OnGoal, SmashError, read_instance
 from smash.problem.blocksworld.problem_file import blocksworld_instance, read_blocksworld
-from smash.problem.blocksworld.text import MOST_BYTES
 from smash.problem.errors import Infeasible, Unsupported
 
 FILES = Path(__file__).parent / "blocksworld"
@@ -256,12 +254,8 @@ def test_every_usual_encoding_and_end_of_line_is_read(tmp_path, encoding, end):
     assert read_blocksworld(path) == blocksworld_instance(problem())
 
 
-def test_files_that_are_too_long_or_no_text_are_refused(tmp_path):
+def test_files_that_are_no_text_are_refused(tmp_path):
     path = tmp_path / "p.pddl"
-    with path.open("wb") as file:
-        os.truncate(file.fileno(), MOST_BYTES + 1)
-    with pytest.raises(MalformedFile, match="MiB are too much"):
-        read_blocksworld(path)
     path.write_bytes(b"(define (problem p)\0)")
     with pytest.raises(MalformedFile, match="no text"):
         read_blocksworld(path)

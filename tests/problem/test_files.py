@@ -2,14 +2,21 @@
 
 import copy
 import json
+import os
+from pathlib import Path
 from typing import Literal
 
 import msgspec
 import pytest
 from hypothesis import given, settings
 
-from smash.problem import MalformedFile, read_instance, write_instance
-from smash.problem.files.documents import convert, replacing
+from smash.cli.plan_files import read_plan_file
+from smash.execution.scene.scene_file import read_scene
+from smash.experiments.sweeps.experiment import read_experiment
+from smash.motion.robots.files import read_robot_file
+from smash.problem import MalformedFile, read_instance, read_plan, write_instance
+from smash.problem.blocksworld.problem_file import read_blocksworld
+from smash.problem.files.documents import MOST_BYTES, convert, replacing
 from smash.problem.files.instances import instance_document, instance_from_document
 from smash.problem.files.plans import plan_document, plan_from_document
 from smash.problem.sets.suites import SUITES, generated_names, made_again, read_suite
@@ -180,3 +187,26 @@ def test_what_is_replaced_is_whole_or_as_it_was(tmp_path):
         temporary.write_text("new")
     assert [entry.name for entry in tmp_path.iterdir()] == ["film.mp4"]
     assert path.read_text() == "new"
+
+
+@pytest.mark.parametrize("size", [MOST_BYTES + 1, 20 * 2**20, None], ids=["a byte", "MiB", "endless"])
+@pytest.mark.parametrize(
+    ("kind", "read"),
+    [
+        ("instance files", read_instance),
+        ("plan files", read_plan),
+        ("plan files", lambda path: read_plan_file(path, instance_from_document(INSTANCE), None, None)),
+        ("PDDL files", read_blocksworld),
+        ("scene files", read_scene),
+        ("robot files", read_robot_file),
+        ("experiment files", read_experiment),
+    ],
+)
+def test_files_that_are_too_long_are_refused_unread(tmp_path, kind, read, size):
+    path = Path("/dev/zero")
+    if size is not None:
+        path = tmp_path / "long"
+        with path.open("wb") as file:
+            os.truncate(file.fileno(), size)
+    with pytest.raises(MalformedFile, match=f"MiB are too much; {kind} of up to 16 MiB are read$"):
+        read(path)

@@ -107,6 +107,8 @@ class Horizon:
 class GrowingPlanner(ParadigmPlanner):
     """A planner whose model has a horizon: the shortest first, then longer ones until one holds every cheaper plan."""
 
+    indexed: ClassVar[bool] = True
+
     @abstractmethod
     def solve_horizon(self, horizon: Horizon, found: Found) -> Ended:
         """Solve a horizon, handing over each better plan."""

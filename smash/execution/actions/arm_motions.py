@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Collection, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,7 +22,7 @@ from smash.execution.scene.tray import Tray
 from smash.motion.collision import CONTACT_MARGIN, DEFAULT_MARGIN, CollisionChecker
 from smash.motion.errors import NoMotion
 from smash.motion.move import Move
-from smash.motion.obstacles import BodyName, HandState, Scene
+from smash.motion.obstacles import FIXTURE, BodyName, HandState, Scene
 from smash.motion.paths import Path
 from smash.motion.planner import MotionPlanner
 from smash.motion.poses import Vector
@@ -83,12 +84,15 @@ class ArmMotions:
         self.planner = MotionPlanner(self.robot, seed=seed)
 
     def warm_up(self) -> None:
-        """Load and compile what motion planning uses, so that the first action's time is not theirs."""
+        """Load and compile what motion planning uses, what names an obstacle too: no action's time is to be theirs."""
         bare = Scene.of_boxes([], np.empty((0, 3)), 0.0).with_table()
         ready = self.robot.ready
         turned = ready + 0.3 * self.robot.first_joint
         self.move(self.planner.plan(ready, turned, bare), HandState(0.0))
         self.move(self.planner.line(ready, (0.0, 0.0, 0.05), bare), HandState(0.0))
+        in_the_way = Scene.of_boxes([FIXTURE], [self.robot.forward(turned).position], OPENINGS[0])
+        with suppress(ExecutionFailure):
+            self.planner.straight(ready, turned, bare.joined(in_the_way))
         importlib.import_module("smash.motion.rrtconnect")
 
     def scene(

@@ -13,9 +13,11 @@ from smash.execution.scene.block_pose import QUARTER, BlockPose
 from smash.motion.robot import Hand
 
 FOOTPRINTS = (0.03, 0.07)
-"""The least and the most of a footprint that a scene may have [m]: the most that the Panda's hand holds (`unfit`)."""
+"""The least and the most of a footprint that the format of scenes allows [m]; the Panda's hand holds them all, whether
+another one does is asked where it is used (`unfit`)."""
 HEIGHTS = (0.025, 0.07)
-"""The same of a height [m]: a block is held by its middle, the fingertips 7 mm below it, the palm 39 mm above."""
+"""The same of a height [m]: a block is held by its middle, the Panda's fingertips 7 mm below it, its palm 39 mm
+above."""
 BESIDE = 0.005
 """The least room between an open finger and the block that it comes down beside [m]."""
 

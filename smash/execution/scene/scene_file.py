@@ -128,7 +128,7 @@ def scene_document(path: str | os.PathLike[str]) -> Any:
     Raises:
         MalformedFile: where it cannot be read, or is neither TOML nor JSON, as its name says.
     """
-    where, content = os.fspath(path), read_bytes(path)
+    where, content = os.fspath(path), read_bytes(path, "scene files")
     return parse_toml(content, where) if where.endswith(".toml") else parse_json(content, where)
 
 
@@ -198,12 +198,12 @@ def _usual(file: _BlockFile, where: str) -> BlockSize:
     """The size of a block that has none of its own: a cube, where the file says no more than its side.
 
     Raises:
-        MalformedFile: where the hand cannot hold it.
+        MalformedFile: where it has an edge that is not allowed.
     """
     if file.footprint is None and file.height is None:
         return BlockSize(file.side, file.side, file.mass)
     footprint, height = (file.side if edge is None else edge for edge in (file.footprint, file.height))
-    _require_graspable("block", footprint, height, where)
+    _require_allowed("block", footprint, height, where)
     return BlockSize(footprint, height, file.mass)
 
 
@@ -211,13 +211,13 @@ def _sizes(files: Mapping[str, _SizeFile], usual: BlockSize, where: str) -> dict
     """The blocks that have a size of their own: what one does not say is as usual, its density too.
 
     Raises:
-        MalformedFile: where the hand cannot hold one of them.
+        MalformedFile: where one of them has an edge or a mass that is not allowed.
     """
     sizes = {}
     for name, file in files.items():
         footprint = usual.footprint if file.footprint is None else file.footprint
         height = usual.height if file.height is None else file.height
-        _require_graspable(f"blocks.{name}", footprint, height, where)
+        _require_allowed(f"blocks.{name}", footprint, height, where)
         share = footprint**2 * height / (usual.footprint**2 * usual.height)
         mass = usual.mass * share if file.mass is None else file.mass
         if not 0.0 < mass <= HEAVIEST:
@@ -226,18 +226,16 @@ def _sizes(files: Mapping[str, _SizeFile], usual: BlockSize, where: str) -> dict
     return sizes
 
 
-def _require_graspable(block: str, footprint: float, height: float, where: str) -> None:
-    """Refuse a block that the hand cannot hold.
+def _require_allowed(block: str, footprint: float, height: float, where: str) -> None:
+    """Refuse a block with edges that the format does not allow: no hand of the package could hold it.
 
     Raises:
-        MalformedFile: with the block, and what fits.
+        MalformedFile: with the block, and what is allowed.
     """
-    for what, edge, (least, most), why in (
-        ("footprint", footprint, FOOTPRINTS, "as the open fingers have room for"),
-        ("height", height, HEIGHTS, "as a block is held by its middle, the fingertips below it and the palm above"),
-    ):
+    for what, edge, (least, most) in (("footprint", footprint, FOOTPRINTS), ("height", height, HEIGHTS)):
         if not least <= edge <= most:
-            raise MalformedFile(where, f"`{block}.{what}`: {edge:g} m is not allowed; {least:g} to {most:g}, {why}")
+            allowed = f"{least:g} to {most:g}, whatever the hand"
+            raise MalformedFile(where, f"`{block}.{what}`: {edge:g} m is not allowed; {allowed}")
 
 
 def _noise(file: _NoiseFile, where: str) -> Noise:

@@ -14,6 +14,7 @@ from math import cos, fsum, hypot, pi, sin
 from smash.execution.scene.block_pose import QUARTER, BlockPose
 from smash.execution.scene.block_size import BlockSize, unfit
 from smash.execution.scene.tray import Tray
+from smash.motion.robot import Hand
 from smash.motion.robots import DEFAULT_ROBOT, load_robot
 from smash.problem.errors import SmashError
 from smash.problem.model import Instance, OnGoal
@@ -224,13 +225,20 @@ class Tabletop:
             DoesNotFit: where its hand cannot hold a block of the scene.
             SmashError: where there is none of that name, or its file is malformed.
         """
-        hand = load_robot(robot).hand
+        self.require_held(load_robot(robot).hand)
+        tray = None if self.tray is None else replace(self.tray, robot=robot)
+        return replace(self, robot=robot, tray=tray)
+
+    def require_held(self, hand: Hand) -> None:
+        """Refuse a hand that cannot hold every block of the scene, whatever edges the format allows.
+
+        Raises:
+            DoesNotFit: with the block, and what the hand has room for.
+        """
         for block, size in {"": self.block, **self.sizes}.items():
             if why := unfit(size, hand):
                 named = f"block {block!r}" if block in self.sizes else "a block"
                 raise DoesNotFit(f"hand {hand.name!r} does not hold {named} of scene {self.name!r}: {why}")
-        tray = None if self.tray is None else replace(self.tray, robot=robot)
-        return replace(self, robot=robot, tray=tray)
 
     @property
     def highest(self) -> int:

@@ -171,7 +171,7 @@ def _ready(tabletop: Tabletop) -> tuple[Spot, float]:
 
 def _spot(slot: Slot) -> Spot:
     headings = tuple(round(slot.heading(direction), DIGITS) for direction in slot.directions)
-    return Spot(slot.radius, round(slot.angle, DIGITS), headings)
+    return Spot(slot.radius, round(slot.angle, DIGITS), headings, slot.highest, slot.falling)
 
 
 def _toppled(trial: Trial) -> Toppled:

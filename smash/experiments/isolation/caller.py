@@ -13,7 +13,7 @@ from time import monotonic
 from typing import Any
 
 from smash.experiments.isolation.hearing import hear_out
-from smash.experiments.isolation.job import STARTUP_LIMIT, Job, Report, longest
+from smash.experiments.isolation.job import STARTUP_LIMIT, Job, Report, load, longest
 from smash.planners.protocol import OnIncumbent
 from smash.problem.errors import SmashError
 from smash.problem.files.plans import action_from_list
@@ -224,7 +224,8 @@ class _Heard:
             return "interrupted", "stopped from outside"
         if self._ended is not None:
             return self._ended["outcome"], self._ended["reason"]
-        return "crashed", "the process that guards the run " + ("stood still" if self.silent else "was killed")
+        guard = f"stood still ({load()})" if self.silent else "was killed"
+        return "crashed", f"the process that guards the run {guard}"
 
 
 def _refused_plans(answer: Mapping[str, Any]) -> list[str]:

@@ -27,7 +27,7 @@ from typing import Any, BinaryIO, NoReturn
 
 import psutil
 
-from smash.experiments.isolation.job import STARTUP_LIMIT, grace, still_running
+from smash.experiments.isolation.job import STARTUP_LIMIT, grace, load, still_running
 from smash.experiments.isolation.leftovers import Left, end_tree, scratch_prefix
 from smash.experiments.isolation.lifetime import adopt_orphans, end_with_parent
 from smash.experiments.isolation.lines import Lines
@@ -244,7 +244,8 @@ class _Watch:
 
     def _late(self) -> tuple[str, str]:
         if self.started is None:
-            return "crashed", f"not ready to plan after {STARTUP_LIMIT:.0f} s"
+            had = sum(_seconds(process) for process in _tree())
+            return "crashed", f"not ready to plan after {STARTUP_LIMIT:.0f} s, {had:.1f} s of them computing ({load()})"
         allowed = self.job.budget + grace(self.job.budget)
         return "over-budget", still_running(allowed, self.job.budget)
 
@@ -288,6 +289,15 @@ def _size(folder: str) -> float:
             with suppress(OSError):
                 total += os.lstat(os.path.join(place, name)).st_blocks * 512
     return total / 2**20
+
+
+def _seconds(process: psutil.Process) -> float:
+    """Return how long a process has computed [s]."""
+    try:
+        times = process.cpu_times()
+    except psutil.Error:
+        return 0.0
+    return float(times.user + times.system)
 
 
 def _tree() -> list[psutil.Process]:

@@ -11,7 +11,7 @@ from threading import Event
 from time import monotonic
 from typing import Any, Protocol
 
-from smash.experiments.isolation.job import longest
+from smash.experiments.isolation.job import load, longest
 from smash.experiments.isolation.lines import Lines
 from smash.experiments.isolation.starting import Guardian, guardian_of
 from smash.experiments.isolation.work import Work
@@ -101,7 +101,7 @@ def done(work: Work, stop: Event | None = None) -> Done:
         return Done(None, "stopped from outside", interrupted=True)
     if heard.unable is not None:
         raise heard.unable(heard.reason)
-    guard = "the process that guards it " + ("stood still" if heard.silent else "was killed")
+    guard = "the process that guards it " + (f"stood still ({load()})" if heard.silent else "was killed")
     return Done(heard.answer, "" if heard.answer is not None else heard.reason or guard)
 
 

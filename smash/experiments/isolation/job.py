@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar
 
@@ -11,6 +13,7 @@ from smash.problem.model import Instance, PlanOptions
 from smash.problem.plan import Plan
 from smash.problem.problem import Problem
 from smash.problem.rules import Verdict
+from smash.problem.words import counted
 from smash.records.outcomes import OUTCOMES, OutcomeName
 
 DEFAULT_MEMORY = 4096
@@ -31,6 +34,12 @@ def grace(budget: float) -> float:
 def still_running(after: float, budget: float) -> str:
     """Say that a planner was stopped beyond its budget [s]."""
     return f"still running after {after:.1f} s on a budget of {budget:g} s: stopped"
+
+
+def load() -> str:
+    """Say how busy the machine is: where it is, work begins late, and that is no fault of the work's."""
+    usable = os.sched_getaffinity(0) if sys.platform == "linux" else range(os.cpu_count() or 1)
+    return f"load {os.getloadavg()[0]:.1f} on {counted(len(usable), 'processor')}"
 
 
 def longest(budget: float) -> float:

@@ -26,6 +26,7 @@ from typing import IO
 
 import psutil
 
+from smash.experiments.isolation.job import load
 from smash.experiments.isolation.leftovers import Left, clear_away
 from smash.experiments.isolation.server import keep_only, request_line, search_path, serve
 from smash.experiments.isolation.work import Work
@@ -37,6 +38,10 @@ _STARTING = 60.0
 """Seconds that a new server has to fork a guardian: it imports the package first."""
 _FORKING = 10.0
 """Seconds that one has that has done so before."""
+_SPELLS = 10
+"""How often it may have as long, if it computes: the machine is busy, or code is compiled for the first time."""
+_COMPUTES = 0.01
+"""What part of a spell it has computed for, if it does not stand still."""
 _ATTEMPTS = 3
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 """What a server loads starts no threads: a copy of a process is whole only where that has one."""
@@ -155,17 +160,19 @@ class ForkServer:
         Raises:
             SmashError: where that does not work out.
         """
+        why = ""
         for _ in range(_ATTEMPTS):
             with self._lock:
                 guardian = self._asked(left)
-                if guardian is None:
+                if isinstance(guardian, str):
+                    why = guardian
                     self._drop(patience=0.0)
                     continue
             with suppress(BrokenPipeError):
                 guardian.stdin.write(request_line(job, left.mark))
                 guardian.stdin.flush()
             return guardian
-        raise SmashError("no process can be started for a run: the process that starts them ends at once")
+        raise SmashError(f"no process can be started for a run, after {_ATTEMPTS} attempts: {why}")
 
     def close(self) -> None:
         """Have it end, which it does once its guardians have, and wait for that."""
@@ -179,8 +186,8 @@ class ForkServer:
             if self._process == guardian.server:
                 self._drop(patience=0.0)
 
-    def _asked(self, left: Left) -> Guardian | None:
-        """Return a guardian that waits for its job; None where the server is gone or stands still."""
+    def _asked(self, left: Left) -> Guardian | str:
+        """Return a guardian that waits for its job; why there is none, where the server is gone or says nothing."""
         server = self._running()
         (asked, stdin), (stdout, told), (status, telling) = os.pipe(), os.pipe(), os.pipe()
         try:
@@ -190,12 +197,28 @@ class ForkServer:
             sent = False
         for number in (asked, told, telling):
             os.close(number)
-        words = _line(status, _FORKING if self._has_forked else _STARTING) if sent else None
+        since = monotonic()
+        words = self._said(status) if sent else b""
         if words:
             self._has_forked = True
             return Guardian(stdin, stdout, status, int(words), self._process)
         for number in (stdin, stdout, status):
             os.close(number)
+        if words is None:
+            return f"the process that starts them said nothing for {monotonic() - since:.1f} s ({load()})"
+        return "the process that starts them ends at once"
+
+    def _said(self, status: int) -> bytes | None:
+        """Return the server's first line in a pipe, empty at its end; None where it stands still or takes too long."""
+        patience = _FORKING if self._has_forked else _STARTING
+        had = _computed(self._process)
+        for _ in range(_SPELLS):
+            words = _line(status, patience)
+            if words is not None:
+                return words
+            before, had = had, _computed(self._process)
+            if had - before < _COMPUTES * patience:
+                break
         return None
 
     def _running(self) -> socket.socket:
@@ -288,6 +311,14 @@ def _line(pipe: int, seconds: float) -> bytes | None:
                 return line if byte else b""
             line += byte
     return None
+
+
+def _computed(process: int) -> float:
+    """Return how long a process has computed [s]."""
+    with suppress(psutil.Error):
+        times = psutil.Process(process).cpu_times()
+        return float(times.user + times.system)
+    return 0.0
 
 
 def _has_one_thread() -> bool:

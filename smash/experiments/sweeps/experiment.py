@@ -134,7 +134,7 @@ def read_experiment(path: str | os.PathLike[str], *, to_run: bool = True) -> Exp
         MalformedFile: with one line that says where and what is allowed.
     """
     where = os.fspath(path)
-    experiment = cast(Experiment, convert(parse_toml(read_bytes(path), where), Experiment, where))
+    experiment = cast(Experiment, convert(parse_toml(read_bytes(path, "experiment files"), where), Experiment, where))
     check_experiment(experiment, where, to_run=to_run)
     return experiment
 

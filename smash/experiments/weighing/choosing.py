@@ -14,6 +14,7 @@ from smash.forecast.model import OutcomeModel
 from smash.forecast.robust import least_risk
 from smash.forecast.search import Candidate, faster, neighbours
 from smash.planners.protocol import ACTIONS
+from smash.problem.errors import Unsupported
 from smash.problem.extras import EXECUTION, MissingExtra, is_there
 from smash.problem.model import Action
 from smash.problem.words import counted
@@ -95,6 +96,28 @@ def ready(question: Question, model: OutcomeModel) -> Rehearsal | None:
     return Rehearsal(default_scene(), model)
 
 
+def breaks_ties(question: Question, forecaster: Forecaster) -> bool:
+    """Return whether plans of the first one's cost have to be looked at for one of less risk.
+
+    Args:
+        question: what from, and what for.
+        forecaster: of its problem.
+    """
+    if question.job.settings.objective != ACTIONS or why_no_ties(question) is not None:
+        return False
+    first = question.starts[0]
+    return forecaster.of(first).risk > 0.0 or forecaster.misfit(first) is not None
+
+
+def why_no_ties(question: Question) -> str | None:
+    """Return what is missing for ties to be broken by risk, or None."""
+    if not question.proven:
+        return "a proven optimum"
+    if not question.job.problem.plain:
+        return "actions of cost 1"
+    return None if question.job.instance.hand is None else "an empty hand at the start"
+
+
 def choose(
     question: Question, forecaster: Forecaster, rehearsal: Rehearsal | None, stopped: Callable[[], bool] = lambda: False
 ) -> Choice:
@@ -126,7 +149,11 @@ class _Choosing:
         return self.started - self.question.spent
 
     def fastest(self) -> Choice:
-        """Return the plan that takes the least time."""
+        """Return the plan that takes the least time.
+
+        Raises:
+            Unsupported: where the scene has no room for any plan that was found.
+        """
         starts, job = self.question.starts, self.question.job
         candidates = faster(
             self.forecaster,
@@ -135,7 +162,10 @@ class _Choosing:
             until=self._begun + ANNEALED * job.budget,
             stopped=self.stopped,
         )
-        given = [Candidate(start, self.forecaster.of(start)) for start in starts]
+        misfits = {start: self.forecaster.misfit(start) for start in starts}
+        given = [Candidate(start, self.forecaster.of(start)) for start in starts if misfits[start] is None]
+        if not given and not candidates:
+            raise Unsupported(f"expected times and risk: no plan was found that fits; one has {misfits[starts[0]]}")
         chosen, how = self._rehearsed([*given, *candidates])
         details: dict[str, object] = {"weighed": how}
         if how == MODEL_ALONE:
@@ -147,23 +177,18 @@ class _Choosing:
         """Return the plan of least risk among those of the first one's cost."""
         actions = self.question.starts[0]
         risk = self.forecaster.of(actions).risk
-        lacking = self._no_ties()
+        lacking = why_no_ties(self.question)
         if lacking is not None:
             note = f"ties are not broken by risk: that takes {lacking}"
             return Choice(actions, monotonic() - self.started, {"risk": risk, "note": note})
         found = least_risk(self.forecaster, actions, self._begun + self.question.job.budget, self.stopped)
         details = {**self._weighed_seconds(), "risk": found.risk, "risk_before": risk}
-        if not found.exact:
+        misfit = self.forecaster.misfit(found.actions)
+        if misfit is not None:
+            details["note"] = f"no plan of this cost was found that fits the scene; this one has {misfit}"
+        elif not found.exact:
             details["note"] = "not all optimal plans could be looked at: there may be one of less risk"
         return Choice(found.actions, monotonic() - self.started, details)
-
-    def _no_ties(self) -> str | None:
-        """Return what is missing for ties to be broken by risk, or None."""
-        if not self.question.proven:
-            return "a proven optimum"
-        if not self.question.job.problem.plain:
-            return "actions of cost 1"
-        return None if self.question.job.instance.hand is None else "an empty hand at the start"
 
     def _weighed_seconds(self) -> dict[str, object]:
         """Return what choosing has taken, in the words of `details`."""

@@ -11,7 +11,7 @@ from time import monotonic
 from smash.experiments.isolation.caller import run_isolated
 from smash.experiments.isolation.job import Job, Report, still_running
 from smash.experiments.weighing.apart import NotChosen, chosen_apart
-from smash.experiments.weighing.choosing import Choice, Choose, Question, choose, ready
+from smash.experiments.weighing.choosing import Choice, Choose, Question, breaks_ties, choose, ready
 from smash.forecast.expected import Forecaster
 from smash.forecast.model import OutcomeModel, default_model
 from smash.planners.protocol import ACTIONS, OnIncumbent
@@ -85,7 +85,7 @@ def weighed(
         choose_by: chooses the plan; where None, it is chosen here.
 
     Raises:
-        Unsupported: where the outcome model does not know the instance.
+        Unsupported: where the outcome model does not know the instance, or its scene has no room for any plan found.
     """
     known = model or default_model()
     forecaster = Forecaster(job.problem, known)
@@ -106,7 +106,8 @@ def weighed(
     try:
         if stopped():
             raise NotChosen("stopped from outside", interrupted=True)
-        choice = (choose_by or choose_here)(question)
+        here = by_actions and not breaks_ties(question, forecaster)  # at once: no process is begun for it
+        choice = (choose_here if here else choose_by or choose_here)(question)
     except NotChosen as error:
         ended: OutcomeName = "interrupted" if error.interrupted else "crashed"
         return replace(_unweighed(asked, job), outcome=ended, reason=str(error))

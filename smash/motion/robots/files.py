@@ -159,7 +159,7 @@ _File = TypeVar("_File", RobotFile, HandFile)
 
 def _read(path: Path, kind: type[_File], format_: str) -> _File:
     where = os.fspath(path)
-    document: Any = parse_toml(read_bytes(path), where)
+    document: Any = parse_toml(read_bytes(path, "robot files"), where)
     check_format(document, where, format_)
     file = cast(_File, convert(document, kind, where))
     for key in _endless(document):

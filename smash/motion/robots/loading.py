@@ -6,7 +6,7 @@ import os
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
 from collections.abc import Set as AbstractSet
-from functools import lru_cache
+from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -27,6 +27,10 @@ DEFAULT_ROBOT = SHIPPED
 FOLDER = Path(__file__).parent
 STRAIGHT = 1e-6
 """Fingers open along the tool's y axis within this, as a share."""
+MOST_LOADED = 16
+"""Robots from outside that are kept, each with its meshes."""
+_LOADED: dict[Path, tuple[Robot, tuple[tuple[int, int] | None, ...]]] = {}
+"""Them by their paths, each with the stamps of its files when it was read; the last one that was read stands last."""
 COARSE, FINE = 0.025, 0.010
 """How far spheres stand out at the base and at the last link where a file does not say it [m]."""
 
@@ -37,7 +41,9 @@ def robot_names() -> tuple[str, ...]:
 
 
 def load_robot(robot: str | os.PathLike[str] | None = None) -> Robot:
-    """Return a robot; the same object whenever the same one is asked for in this process, until its file changes.
+    """Return a robot; the same object whenever the same one is asked for in this process, until its files change.
+
+    Its files are those that `Robot.files` names: an arm whose URDF, meshes or spheres are others is another arm.
 
     Args:
         robot: the name of a shipped one, or the path of a robot file, which ends in `.toml`; None for the default one.
@@ -47,7 +53,30 @@ def load_robot(robot: str | os.PathLike[str] | None = None) -> Robot:
         SmashError: where there is none of that name.
     """
     path = _path_of(robot)
-    return _loaded(path, path.stat().st_mtime_ns if path.parent != FOLDER and path.is_file() else 0)
+    if path.parent == FOLDER:
+        return _shipped(path)
+    known = _LOADED.get(path)
+    if known is not None and known[1] == _stamps(known[0].files):
+        return known[0]
+    loaded = _load(path)
+    _LOADED.pop(path, None)
+    _LOADED[path] = loaded, _stamps(loaded.files)
+    if len(_LOADED) > MOST_LOADED:
+        del _LOADED[next(iter(_LOADED))]
+    return loaded
+
+
+def _stamps(files: Iterable[Path]) -> tuple[tuple[int, int] | None, ...]:
+    """When each file was written last [ns], and how long it is; None where it is not there."""
+    stamps: list[tuple[int, int] | None] = []
+    for file in files:
+        try:
+            found = file.stat()
+        except OSError:
+            stamps.append(None)
+        else:
+            stamps.append((found.st_mtime_ns, found.st_size))
+    return tuple(stamps)
 
 
 def _path_of(robot: str | os.PathLike[str] | None) -> Path:
@@ -60,8 +89,12 @@ def _path_of(robot: str | os.PathLike[str] | None) -> Path:
     return Path(named).absolute()
 
 
-@lru_cache(maxsize=16)
-def _loaded(path: Path, _changed: int) -> Robot:
+@cache
+def _shipped(path: Path) -> Robot:
+    return _load(path)
+
+
+def _load(path: Path) -> Robot:
     where = str(path)
     file = read_robot_file(path)
     if path.parent != FOLDER and file.name in robot_names():
@@ -163,6 +196,7 @@ class _Assembly:
             name=self.file.name,
             label=self._label(),
             path=self.path,
+            files=self._files(),
             hand=hand,
             base=arm.base,
             joints=tuple(arm.joints),
@@ -193,12 +227,16 @@ class _Assembly:
     def _label(self) -> str:
         if self.path.parent == FOLDER:
             return self.file.name
+        content = b"".join(sha256(file.read_bytes()).digest() for file in self._files() if file.is_file())
+        return f"{self.file.name}-{sha256(content).hexdigest()[:8]}"
+
+    def _files(self) -> tuple[Path, ...]:
+        """All that the robot is made of, spheres that are not there yet included."""
         arm, hand = self.file.arm, self.hand_path.parent / self.hand_file.urdf
         files = [self.path, self.hand_path, self.path.parent / arm.urdf, hand]
         files += [self.path.parent / arm.spheres] if arm.spheres is not None else []
         files += [Path(mesh.get("filename", "")) for mesh in self.tree.iter("mesh")]
-        content = b"".join(sha256(file.read_bytes()).digest() for file in files if file.is_file())
-        return f"{self.file.name}-{sha256(content).hexdigest()[:8]}"
+        return tuple(files)
 
     def _bodies(self, hand: Hand) -> dict[str, int]:
         """The body that each link of the arm belongs to, base first; each body has something that collides."""

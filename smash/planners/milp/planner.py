@@ -17,6 +17,7 @@ class MilpPlanner(MethodPlanner):
     """A planner that solves MILPs among other things."""
 
     solvers: ClassVar[frozenset[str]] = frozenset(SOLVERS)
+    indexed: ClassVar[bool] = True
 
     def load_solver(self, settings: Settings) -> None:
         """Load the solver.

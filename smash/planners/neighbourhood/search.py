@@ -56,6 +56,8 @@ MOST_GATHERED = 2.0
 """A gathered window has no more than so many times the steps of its arm."""
 MOST_JOINED = 4
 """Steps whose locations a gathered window has, beside those of a first one."""
+MOST_KNOWN = 100_000
+"""Windows whose least cost is kept, each by a hash, so that none is searched whole twice: some 10 MB."""
 LEAST_PLACES, MANY_PLACES = 3, 5
 """With fewer locations and no topple there is no greedy tail; with fewer than the second nothing is gathered."""
 
@@ -75,7 +77,7 @@ class NeighbourhoodSearch:
         self._steps: list[Step] = []
         self._cost = 0
         self._arms: list[Arm] = []
-        self._least: dict[tuple[Any, ...], int] = {}
+        self._least: dict[int, int] = {}
         self._code: Any = None
         self._class_of: list[int] = []
         self._plainly_moved = not problem.options.topple and not self._numbered.table
@@ -141,7 +143,7 @@ class NeighbourhoodSearch:
         if window is None:
             return BEAM
         cost = cost_of(steps[begin:end])
-        key = (window.blocks, window.locations, window.problem.start, goal_piles(window.problem))
+        key = hash((window.blocks, window.locations, window.problem.start, goal_piles(window.problem)))
         if self._least.get(key) == cost:
             return BEAM
         turned = window.whole and self._plainly_moved and self._draw.random() < 0.5
@@ -161,6 +163,8 @@ class NeighbourhoodSearch:
             moves = moves if found is None else found
         made = None if moves is None else running.engine.steps(problem, moves)
         if running.over and not running.truncated:
+            if len(self._least) >= MOST_KNOWN:
+                self._least.clear()  # most of them are windows of plans that were left long ago
             self._least[key] = cost if made is None else cost_of(made)
         if made is not None:
             if turned:

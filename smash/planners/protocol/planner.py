@@ -34,6 +34,8 @@ class Planner(Protocol):
     - `holds: bool`, whether it takes a start with a block in the hand;
     - `solvers: frozenset[str]`, the MILP solvers that it can be told to use: one that names none has no MILP that
       a solver could be chosen for or another planner's plan could start, and refuses to be told so;
+    - `indexed: bool`, whether it has a model with an index of time, whose steps or layers can be told: one that says
+      nothing refuses a horizon;
     - `load_solver(settings) -> None`, loads the solver that it is told to use, before the clock starts;
     - `missing() -> str | None`, what is not installed that it needs;
     - `with_encoding(name) -> Planner`, the same planner on another PDDL encoding (`NAME:ENCODING`);
@@ -63,6 +65,7 @@ class BasePlanner:
     open_goals: ClassVar[bool] = False
     holds: ClassVar[bool] = False
     solvers: ClassVar[frozenset[str]] = frozenset()
+    indexed: ClassVar[bool] = False
 
     def prepare(self) -> None:
         """Load what is loaded once and compile what is compiled once; not counted in the planner's time."""
@@ -151,6 +154,8 @@ def why_not_settings(planner: Planner, settings: Settings) -> str | None:
         return f"it has no MILP that `--solver {settings.solver}` could solve"
     if settings.warm_start is not None and not solvers:
         return f"it has no MILP that `--warm-start {settings.warm_start}` could start"
+    if settings.horizon is not None and not getattr(planner, "indexed", BasePlanner.indexed):
+        return f"it has no model with an index of time that `--horizon {settings.horizon}` could be for"
     return None
 
 

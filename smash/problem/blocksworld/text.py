@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import codecs
 import os
-from pathlib import Path
 
 from smash.problem.errors import MalformedFile
 from smash.problem.files.documents import read_bytes
 
-MOST_BYTES = 16 * 2**20
-"""Longest file that is read: all its parentheses in memory stay well below 1 GB; 10,000 blocks need 1 MB."""
 _MARKS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
 
 
@@ -20,12 +17,7 @@ def read_text(path: str | os.PathLike[str]) -> str:
     Raises:
         MalformedFile: where it cannot be read, is too long or is no text.
     """
-    where = os.fspath(path)
-    file = Path(path)
-    if file.is_file() and file.stat().st_size > MOST_BYTES:
-        size, most = file.stat().st_size / 2**20, MOST_BYTES // 2**20
-        raise MalformedFile(where, f"{size:.0f} MiB are too much; PDDL files of up to {most} MiB are read")
-    return decoded(read_bytes(path), where)
+    return decoded(read_bytes(path, "PDDL files"), os.fspath(path))
 
 
 def decoded(content: bytes, where: str) -> str:

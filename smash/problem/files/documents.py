@@ -16,6 +16,10 @@ import msgspec
 from smash.problem.errors import MalformedFile
 from smash.problem.files.typed import typed
 
+MOST_BYTES = 16 * 2**20
+"""Longest file of those that somebody writes for us: all that is made of it stays well below 1 GB; 10,000 blocks need
+1 MB."""
+
 
 def parse_json(text: str | bytes, where: str) -> Any:
     """Parse one JSON document; a key that stands twice in one object is refused.
@@ -60,14 +64,24 @@ def parse_toml(content: bytes, where: str) -> dict[str, Any]:
         raise MalformedFile(where, f"not TOML: {error}") from None
 
 
-def read_bytes(path: str | os.PathLike[str]) -> bytes:
+def read_bytes(path: str | os.PathLike[str], kind: str | None = None) -> bytes:
     """Return the content of a file.
 
+    Args:
+        path: of the file.
+        kind: what files of its kind are called, where they have `MOST_BYTES` at most; None: its length is not limited.
+
     Raises:
-        MalformedFile: where it cannot be read.
+        MalformedFile: where it cannot be read, or is too long.
     """
     try:
-        return Path(path).read_bytes()
+        with Path(path).open("rb") as file:
+            content = file.read(-1 if kind is None else MOST_BYTES + 1)
+            if kind is None or len(content) <= MOST_BYTES:
+                return content
+            size, most = os.fstat(file.fileno()).st_size / 2**20, MOST_BYTES // 2**20
+        much = f"{size:.1f} MiB are" if size > most else f"more than {most} MiB are"  # of a device nobody knows it
+        raise MalformedFile(os.fspath(path), f"{much} too much; {kind} of up to {most} MiB are read")
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise MalformedFile(os.fspath(path), f"cannot be read: {reason}") from None

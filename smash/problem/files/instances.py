@@ -93,7 +93,7 @@ def read_instance(path: str | os.PathLike[str]) -> Instance:
         MalformedFile: with one line that says where and what is allowed.
     """
     where = arguments.path(path)
-    return instance_from_document(parse_json(read_bytes(path), where), where)
+    return instance_from_document(parse_json(read_bytes(path, "instance files"), where), where)
 
 
 def instance_from_document(document: Any, where: str = "instance") -> Instance:

@@ -92,7 +92,7 @@ def read_plan(path: str | os.PathLike[str]) -> Plan:
         MalformedFile: with one line that says where and what is allowed.
     """
     where = arguments.path(path)
-    return plan_from_document(parse_json(read_bytes(path), where), where)
+    return plan_from_document(parse_json(read_bytes(path, "plan files"), where), where)
 
 
 def plan_from_document(document: Any, where: str = "plan") -> Plan:

@@ -41,6 +41,17 @@ def test_planners_without_a_milp_take_no_solver_and_no_warm_start(name):
     assert why_refused(planner, simple, Settings()) is None
 
 
+@pytest.mark.parametrize("name", sorted({*planner_names()} - {COMMAND}))
+def test_planners_without_a_time_index_take_no_horizon(name):
+    try:
+        planner = get_planner(name)
+    except Unsupported as error:
+        pytest.skip(str(error))
+    reason = why_refused(planner, Problem(read_suite("multi-4")[0]), Settings(horizon=3))
+    words = "it has no model with an index of time that `--horizon 3` could be for"
+    assert reason == (None if name in WITH_MILP | {"cp-sat", "clingo"} else words)
+
+
 @pytest.mark.parametrize("planner", [FlowPlanner(), LayeredPlanner()], ids=["flow", "layered"])
 @pytest.mark.parametrize("seed", range(6))
 def test_every_solver_gives_the_optimum(planner, solver, seed):

@@ -133,3 +133,17 @@ def test_a_window_that_has_no_better_plan_is_not_planned_twice(monkeypatch):
     assert searching.cost == best
     assert len(begun) == 1
     assert efforts[0] > efforts[1] == efforts[2]
+
+
+def test_what_is_known_of_windows_does_not_grow_without_end(monkeypatch):
+    monkeypatch.setattr(search, "MOST_KNOWN", 3)
+    problem = Problem(generate("multi", 9, buffers=1, seed=4)[0], PlanOptions(topple=False))
+    searching = NeighbourhoodSearch(problem, 1)
+    searching.take(first_plan(problem))
+    searching.run(perf_counter())
+    known = []  # windows of few steps are searched whole
+    for size in 3 * (2, 3, 4, 5):
+        searching._window(Arm(size, 10**6, 1.0), math.inf)
+        known.append(len(searching._least))
+    assert max(known) == 3
+    assert verdict_on(problem, searching._steps).accepted
