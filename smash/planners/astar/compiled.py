@@ -23,6 +23,7 @@ class Code(NamedTuple):
     file_again: Callable[..., None]
     expand_some: Callable[..., int]
     expand_layer: Callable[..., int]
+    mark_goals: Callable[..., int]
     spread: Callable[..., int]
 
 
@@ -36,6 +37,7 @@ INTERPRETED = Code(
     search.file_again,
     search.expand_some,
     layer.expand_layer,
+    patterns.mark_goals,
     patterns.spread,
 )
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from smash.planners.astar.patterns import ENTRIES, FIRST, UNKNOWN
 from smash.planners.astar.task import Ints
-from smash.problem.model import PlanOptions, StacksGoal
+from smash.problem.model import OnGoal, PlanOptions
 from smash.problem.views.numbered import Numbered
 from smash.problem.views.targets import goal_piles
 
@@ -53,7 +53,7 @@ def takes_patterns(problem: Numbered, options: PlanOptions) -> bool:
     """Whether transfers of single blocks to places that the goal names are all there is, on few locations."""
     return (
         not options.topple
-        and isinstance(problem.instance.goal, StacksGoal)
+        and not isinstance(problem.instance.goal, OnGoal)
         and not problem.table
         and problem.locations <= MOST_PLACES
     )
@@ -171,15 +171,19 @@ class PatternBuilder:
         cuts = self._cuts.setdefault(size, _Cuts.of(size, places))
         table = np.full(self._entries(size), UNKNOWN, dtype="u1")
         work = np.zeros(2 * size + places, dtype="i8")
-        table[self._number(blocks, self._goal)] = 0
-        depth, found = 0, 1
+        piles = [[blocks.index(block) for block in pile if block in blocks] for pile in self._goal]
+        wanted = np.array([*map(len, piles), *itertools.chain.from_iterable(piles)], dtype="i8")
+        depth, found = -1, 1
         while found:
             found = 0
             for begin in range(0, len(table), SHARE):
                 if perf_counter() > deadline:
                     return None
-                end = min(len(table), begin + SHARE)
-                found += self._code.spread(size, places, cuts.ways, cuts.numbers, table, work, depth, begin, end)
+                part = table, work, begin, min(len(table), begin + SHARE)
+                if depth < 0:
+                    found += self._code.mark_goals(size, places, cuts.ways, cuts.numbers, wanted, *part)
+                else:
+                    found += self._code.spread(size, places, cuts.ways, cuts.numbers, table, work, depth, *part[2:])
             depth += 1
         return table
 

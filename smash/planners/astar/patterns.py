@@ -2,8 +2,9 @@
 
 Without topple a transfer moves one block, and leaving blocks out of a plan leaves a plan for the rest. So the fewest
 transfers of the blocks of disjoint sets, each set by itself, add up to a bound. A pattern's table holds them for every
-arrangement of its blocks; its *number* is that of their order (bottom first, location after location) times the ways
-of cutting the order into piles, and the number of the way.
+arrangement of its blocks; in those of the goal the blocks that it lists are the lowest, each in its place, and others
+lie anywhere above. An arrangement's *number* is that of its order (bottom first, location after location) times the
+ways of cutting the order into piles, and the number of the way.
 
 A layout is a sequence of numbers: how many patterns and locations there are; then per pattern five entries (`SIZE` and
 following); then what those point to. Patterns of one sum stand side by side.
@@ -71,6 +72,42 @@ def _bits(number: int) -> int:
         number &= number - 1
         count += 1
     return count
+
+
+def mark_goals(
+    size: int, places: int, ways: Ints, cuts: Ints, wanted: Ints, table: Ints, work: Ints, begin: int, end: int
+) -> int:
+    """Set the arrangements of `begin .. end-1` that reach the goal to 0 transfers; return how many there are.
+
+    Args:
+        size: blocks of the pattern.
+        places: locations.
+        ways: per way of cutting the heights of all piles.
+        cuts: the number of ways, and what `spread` reads.
+        wanted: per location how many blocks of the pattern the goal lists there; then those, bottom first.
+        table: of the pattern.
+        work: scratch for two orders and the heights.
+        begin: the first arrangement to look at.
+        end: the one after the last.
+    """
+    found = 0
+    for number in range(begin, end):
+        _arrange(size, places, ways, number // cuts[0], number % cuts[0], work)
+        bottom = 0
+        listed = places
+        right = True
+        for place in range(places):
+            if work[2 * size + place] < wanted[place]:
+                right = False
+                break
+            for level in range(wanted[place]):
+                right = right and work[bottom + level] == wanted[listed + level]
+            bottom += work[2 * size + place]
+            listed += wanted[place]
+        if right:
+            table[number] = 0
+            found += 1
+    return found
 
 
 def spread(

@@ -6,6 +6,7 @@ with how deep piles are taken off and with what hits the cycles, as clauses over
 
 - `removed[b]`: block b leaves its start pile (2 actions where it may stay, and has to be placed if it is removed);
 - `at[t, q]`: the base of tower t is placed for good on location q;
+- `under[t, u]`: towers t and u, neither of which has to be at a bottom, are both begun anew at one location, t below u;
 - topples (1) of neighbours in a start pile, and `aside[b]` (2): what frees a block from moving directly.
 
 Relations of precedence hold where their condition does, and each cycle of them is a clause: one of its conditions is
@@ -16,7 +17,7 @@ from __future__ import annotations
 
 import heapq
 import itertools
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 
@@ -41,7 +42,7 @@ class Places:
 
     Attributes:
         kept: per location how many of its lowest blocks stay.
-        at: per base of a tower that is begun anew, its location.
+        at: per base of a tower that is begun anew, its location; of towers at one location the lower ones come first.
     """
 
     kept: dict[str, int]
@@ -141,6 +142,7 @@ class _Model:
         self._removed: dict[str, int] = {}
         self._frees: dict[str, tuple[int, ...]] = {}
         self._at: dict[tuple[str, str], int] = {}
+        self._under: dict[tuple[str, str], int] = {}
         self._edges: dict[Event, list[Edge]] = {}
         self._forward: dict[str, Edge] = {}
         self.base += MOVE_COST * len(self._named & set(instance.table))
@@ -148,6 +150,7 @@ class _Model:
             self._add_pile(location, instance.start[location])
         self._choose_places()
         self._relate()
+        self._relate_order()
 
     def _add_pile(self, location: str, pile: Pile) -> None:
         """Add the removals of a start pile, and what frees its blocks."""
@@ -206,7 +209,21 @@ class _Model:
                     self.clauses.ask([-self._at[base, location], self._removed[pile[0]]])
             for lower, higher in itertools.combinations(grounded, 2):
                 self.clauses.ask([-self._at[lower, location], -self._at[higher, location]])
+        self._order([tower[0] for tower in self._towers if self._moves(tower[0]) and tower[0] not in wanted])
         self._count_places(wanted)
+
+    def _order(self, loose: Sequence[str]) -> None:
+        """Say that of two towers at one location one is below the other, where neither has to be at a bottom."""
+        locations = self.problem.posed.locations
+        if len(loose) ** 2 * len(locations) // 2 > MOST_PAIRS:
+            return
+        for one, other in itertools.combinations(loose, 2):
+            self._under[one, other] = self.clauses.variable()
+            self._under[other, one] = self.clauses.variable()
+            either = self._under[one, other], self._under[other, one]
+            self.clauses.ask(self._unless(either))
+            for location in locations:
+                self.clauses.ask([-self._at[one, location], -self._at[other, location], *either])
 
     def _count_places(self, wanted: frozenset[str]) -> None:
         """As many locations are empty at the start, or emptied, as bottoms are made: the places say so, but slowly."""
@@ -268,6 +285,12 @@ class _Model:
                 stays = self._unless(self._if_removed(tower[0]))
                 self._edge((PLACED, tower[-1]), (PLACED, base), (*conditions, *stays))
 
+    def _relate_order(self) -> None:
+        """Say that of two towers at one location the lower is whole before the upper one is begun."""
+        top = {tower[0]: tower[-1] for tower in self._towers}
+        for (lower, upper), under in self._under.items():
+            self._edge((PLACED, top[lower]), (PLACED, upper), (under,))
+
     def _edge(self, earlier: Event, later: Event, conditions: tuple[int, ...], mover: str | None = None) -> Edge:
         edge = later, conditions, mover
         self._edges.setdefault(earlier, []).append(edge)
@@ -286,7 +309,11 @@ class _Model:
         for (base, location), place in self._at.items():
             if place in true and self._is_removed(base, true):
                 at.setdefault(base, location)
-        return Places(kept, at)
+
+        def height(base: str) -> int:
+            return sum(self._under.get((lower, base)) in true for lower in at if at[lower] == at[base])
+
+        return Places(kept, {base: at[base] for base in sorted(at, key=height)})
 
     def _is_removed(self, block: str, true: set[int]) -> bool:
         return all(literal in true for literal in self._if_removed(block))
@@ -302,7 +329,7 @@ class _Model:
         edges = {
             event: [edge for edge in following if true.issuperset(edge[1])] for event, following in self._edges.items()
         }
-        added = 0
+        added = self._cut_off_orders(true)
         while perf_counter() < deadline:
             found = self._cycles_left(edges, true, freed, deadline)
             if not found:
@@ -311,6 +338,20 @@ class _Model:
                 added += self.clauses.ask(clause)
                 if freed.isdisjoint(movers):
                     freed.add(min(movers))
+        return added
+
+    def _cut_off_orders(self, true: set[int]) -> int:
+        """Add that of three towers none is below the next all round, where a solution says so; return how often."""
+        above: dict[str, set[str]] = {}
+        for (lower, upper), under in self._under.items():
+            if under in true:
+                above.setdefault(lower, set()).add(upper)
+        added = 0
+        for lower, middle in [(lower, middle) for lower, over in above.items() for middle in over]:
+            for upper in above.get(middle, ()):
+                if lower in above.get(upper, ()):
+                    pairs = (lower, middle), (middle, upper), (upper, lower)
+                    added += self.clauses.ask(self._unless(self._under[pair] for pair in pairs))
         return added
 
     def _cycles_left(

@@ -58,6 +58,7 @@ def demands_of(
         instance: the problem.
         most: of an `on` goal, how many of the lowest blocks of locations are kept at most; None: all that may stay.
         at: of an `on` goal, the locations of towers that are begun anew, by their base; the others may be anywhere.
+            Of towers at one location each stands on those before it, all on one that has to be at the bottom.
     """
     goal = instance.goal
     if isinstance(goal, OnGoal):
@@ -114,11 +115,12 @@ def _on_demands(instance: Instance, goal: OnGoal, most: Mapping[str, int], at: M
         elif rest:
             floating.append(FloatingChain(rest, tower[0] in bottom))
     # What is begun at a location stands on what is built on its kept part, and a bottom comes first.
-    for chain in sorted(floating, key=lambda chain: not chain.bottom):
-        begun = at.get(chain.blocks[0])
-        if begun is not None:
-            build[begun] = build.get(begun, ()) + chain.blocks
-    floating = [chain for chain in floating if chain.blocks[0] not in at]
+    order = {base: number for number, base in enumerate(at)}
+    begun = [chain for chain in floating if chain.blocks[0] in order]
+    for chain in sorted(begun, key=lambda chain: (not chain.bottom, order[chain.blocks[0]])):
+        location = at[chain.blocks[0]]
+        build[location] = build.get(location, ()) + chain.blocks
+    floating = [chain for chain in floating if chain.blocks[0] not in order]
     return _demands(instance, keep, build, tuple(floating))
 
 

@@ -13,7 +13,7 @@ from smash.planners.astar.pattern_sets import PatternBuilder, Patterns, takes_pa
 from smash.planners.astar.patterns import PATTERNS, pattern_bound
 from smash.planners.astar.search import BEST, PROVEN, UPPER
 from smash.planners.astar.task import make_setting
-from smash.problem import PlanOptions, StacksGoal, make_instance
+from smash.problem import PlanOptions, PositionsGoal, StacksGoal, make_instance
 from smash.problem.views.numbered import Numbered
 from tests.oracle import optimal_cost
 
@@ -21,7 +21,10 @@ NO_TOPPLE = PlanOptions(topple=False)
 
 
 def drawn(seed, most_blocks=5):
-    """Draw start and goal over two to four locations, of which the goal leaves some empty."""
+    """Draw start and goal over two to four locations, of which the goal leaves some empty.
+
+    Of odd seeds it lists the lower parts of its piles alone (a `positions` goal).
+    """
     draw = random.Random(seed)
     blocks = [f"b{number}" for number in range(draw.randint(2, most_blocks))]
     stacks = [f"s{number}" for number in range(draw.randint(2, 3))]
@@ -33,7 +36,10 @@ def drawn(seed, most_blocks=5):
             piles[draw.choice(places)].append(block)
         return {place: tuple(pile) for place, pile in piles.items()}
 
-    goal = StacksGoal(arrangement(stacks))
+    wanted = arrangement(stacks)
+    listed = {place: pile[: draw.randint(0, len(pile))] for place, pile in wanted.items()}
+    positions = {block: (place, height) for place, pile in listed.items() for height, block in enumerate(pile, 1)}
+    goal = PositionsGoal(positions) if seed % 2 else StacksGoal(wanted)
     return make_instance(arrangement(stacks + buffers), goal, name="x", blocks=blocks, stacks=stacks, buffers=buffers)
 
 

@@ -5,12 +5,14 @@ import math
 import pytest
 from hypothesis import assume, given, settings
 
+from smash.planners.precedence import emptying
 from smash.planners.precedence.emptying import bases, emptying_bound, places_decide
 from smash.planners.precedence.graph import build_graph
 from smash.planners.precedence.hitting_set import MAXSAT_MODULE, HittingSetSolver
 from smash.problem import OnGoal, PlanOptions, make_instance
 from smash.problem.extras import is_there
 from smash.problem.problem import Problem
+from smash.problem.views.demands import demands_of
 from tests.oracle import optimal_cost
 from tests.relations import related
 from tests.strategies import instances, plan_options
@@ -70,6 +72,51 @@ def test_what_leaves_a_location_is_in_the_way_of_the_tower_that_is_built_there(m
     assert places_decide(problem)
     assert bounds(problem, maxsat) == (6, 7)
     assert optimal_cost(instance, problem.options) == 7
+
+
+@pytest.mark.parametrize("maxsat", [False, pytest.param(True, marks=needs_maxsat)])
+def test_of_two_towers_at_one_location_one_is_whole_before_the_other_is_begun(maxsat):
+    """Neither c on d nor a on b has to be at a bottom, and on two locations neither can wait for the other."""
+    goal = OnGoal({"c": "d", "a": "b"})
+    instance = make_instance({"s1": "c", "u1": "adb"}, goal, name="x", blocks="abcd", stacks=["s1"], buffers=["u1"])
+    problem = Problem(instance, PlanOptions())
+    assert places_decide(problem)
+    assert bounds(problem, maxsat) == (8, 11)
+    assert optimal_cost(instance, problem.options) == 11
+
+
+def three_towers():
+    """Return a problem in which three towers are begun anew at the one location there is."""
+    goal = OnGoal({"a": "b", "c": "d", "e": "f"})
+    return Problem(make_instance({}, goal, name="x", blocks="abcdef", stacks=["s1"], table="abcdef"), PlanOptions())
+
+
+def test_the_towers_of_a_solution_are_built_in_its_order():
+    """Whichever of three towers at one location is the lowest: the places name it first, and the demands build it."""
+    problem = three_towers()
+    built = []
+
+    def on_places(places):
+        chain = demands_of(problem.posed, places.kept, places.at).build["s1"]
+        assert [block for block in chain if block in places.at] == list(places.at)
+        built.append(chain)
+
+    bound = emptying_bound(problem, build_graph(problem), (), math.inf, lambda bound: None, on_places=on_places)
+    assert bound == optimal_cost(problem.instance, problem.options) == 12
+    assert sorted(built[-1]) == list("abcdef")
+
+
+def test_no_three_towers_are_each_below_the_next():
+    model = emptying._Model(three_towers())
+    round_about = {model._under[pair] for pair in (("b", "d"), ("d", "f"), ("f", "b"))}
+    assert model._cut_off_orders(round_about) == 1
+    assert model._cut_off_orders(round_about) == 0
+    assert tuple(sorted(-literal for literal in round_about)) in model.clauses.asked
+
+
+def test_where_too_many_pairs_would_have_to_be_kept_apart_their_order_is_left_open(monkeypatch):
+    monkeypatch.setattr(emptying, "MOST_PAIRS", 3)
+    assert not emptying._Model(three_towers())._under
 
 
 @needs_maxsat
