@@ -2,8 +2,8 @@
 
 Rows are added as cycles are found violated. Where each block is put aside by itself the choices are a directed feedback
 vertex set; if a second does not settle that, an annealed set comes next, and then core-guided MaxSAT where the extra
-`maxsat` is installed, rank inequalities and integer solves where it is not. Where a topple frees several blocks there
-is no annealed set and no rank inequality; the rest is the same.
+`maxsat` is installed and there are not too many blocks for it, rank inequalities and integer solves elsewhere. Where a
+topple frees several blocks there is no annealed set and no rank inequality; the rest is the same.
 """
 
 from __future__ import annotations
@@ -45,16 +45,19 @@ COMPILE_SECONDS, MOST_COMPILE_SECONDS = 1.5, 30.0
 nothing can be done without."""
 QUICK_SECONDS, QUICK_CHOICES = 1.0, 150
 """For integer solves on the cycles alone, and with how many choices they have a chance."""
-ROUNDS = ((10, 15), (12, 15), (14, 400))
+ROUNDS = ((10, 15), (12, 40), (14, 400))
 """The largest sets of the rank inequalities, and the most rounds with each."""
-TRIES = 3
-"""Sets grown from one block in a round."""
+NOISE = (1.0, 3.0, 5.0)
+"""How much chance decides about each of the sets grown from one block in a round."""
 STALL_ROUNDS, STALL = 6, 5e-4
 """Sets grow larger where so many rounds raised the bound by no more than this share."""
 SLACK = 0.2
-"""Rows exceeded by more are dropped between rounds; sets grow along the others."""
-LONGEST = 8
-"""Of the cycles along which sets grow."""
+"""Rows exceeded by more are dropped between rounds."""
+TIGHT, LONGEST = 0.05, 14
+"""Sets grow along rows that are exceeded by less, of no more blocks."""
+MOST_COUNTED, MANY_SHARE = 700, 0.8
+"""With more blocks rank inequalities prove more than MaxSAT (with 500 less), as long as they have time: the share of
+the time left that they may take then."""
 SHORT_SHARE, MOST_SHORT = 0.2, 200_000
 """Short cycles are listed for MaxSAT for no more than this share of the time left, and no more of them."""
 MOVES = 10_000
@@ -92,7 +95,7 @@ class HittingSetSolver:
         graph: the precedence graph.
         threads: HiGHS' threads.
         on_bound: called at once with every better bound.
-        prover: `HIGHS` or `MAXSAT`; None: the latter where it is installed.
+        prover: `HIGHS` or `MAXSAT`; None: the latter where it is installed and serves better.
     """
 
     def __init__(
@@ -104,6 +107,7 @@ class HittingSetSolver:
     ) -> None:
         self.graph = graph
         self._prover = prover or (MAXSAT if is_there(MAXSAT_MODULE) else HIGHS)
+        self._most_counted = math.inf if prover else MOST_COUNTED
         self._on_bound = on_bound
         self.finder = CycleFinder(graph)
         self._kernels = INTERPRETED
@@ -221,12 +225,14 @@ class HittingSetSolver:
             return
         if turns is not None:
             self._anneal(turns, _share(deadline, ANNEAL_SHARE))
-        if turns is None or self._prover == MAXSAT:
+        many = turns is not None and len(turns.free) > self._most_counted
+        if turns is None or (self._prover == MAXSAT and not many):
             self._count(turns, deadline)
             return
         from smash.planners.precedence.ranks import RankFinder
 
-        self._rank(RankFinder(turns, self._kernels), _share(deadline, RANK_SHARE), deadline)
+        until = _share(deadline, MANY_SHARE if many else RANK_SHARE)
+        self._rank(RankFinder(turns, self._kernels), until, deadline, patient=many)
 
     def _anneal(self, turns: TurnGraph, until: float) -> None:
         """Look for fewer choices, until one annealing finds nothing better."""
@@ -272,23 +278,31 @@ class HittingSetSolver:
                 solver.add(clause_of(row))
         solver.close()
 
-    def _rank(self, finder: RankFinder, until: float, deadline: float) -> None:
-        """Add rank inequalities of growing sets; each round cuts the relaxation by cycles again."""
+    def _rank(self, finder: RankFinder, until: float, deadline: float, *, patient: bool) -> None:
+        """Add rank inequalities of growing sets; each round cuts the relaxation by cycles again.
+
+        Args:
+            finder: of the inequalities.
+            until: when to stop [s, `perf_counter`].
+            deadline: of the linear program in hand.
+            patient: whether to go on with the largest sets as long as the bound rises at all.
+        """
         relaxation = self._relaxation
         for most, rounds in ROUNDS:
+            stall = 0.0 if patient and most == ROUNDS[-1][0] else STALL
             bounds: list[float] = []
             for _ in range(rounds):
                 if self._proven() or perf_counter() > until:
                     return
-                rows = relaxation.tight(SLACK, LONGEST)
-                for attempt in range(TRIES):
-                    for row, needed in finder.violated(relaxation.values, rows, most, 0.5 + attempt, until):
+                rows = relaxation.tight(TIGHT, LONGEST)
+                for noise in NOISE:
+                    for row, needed in finder.violated(relaxation.values, rows, most, noise, until):
                         self.state.rounds["ranks"] += relaxation.add(row, needed)
                 if not self._relax(deadline, 0.98):
                     return
                 relaxation.drop_slack(SLACK)
                 bounds.append(relaxation.objective)
-                if len(bounds) > STALL_ROUNDS and bounds[-1] - bounds[-1 - STALL_ROUNDS] < STALL * bounds[-1]:
+                if len(bounds) > STALL_ROUNDS and bounds[-1] - bounds[-1 - STALL_ROUNDS] <= stall * bounds[-1]:
                     break
 
     def _integrate(self, deadline: float) -> None:

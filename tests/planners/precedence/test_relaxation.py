@@ -52,6 +52,35 @@ def test_rows_that_are_exceeded_are_dropped_and_may_come_again(triangle):
     assert triangle.tight(0.1, 3) == [PAIRS[1]]
 
 
+def test_a_linear_program_begins_from_the_one_before_where_rows_were_added_and_dropped(triangle):
+    triangle.add(frozenset({0}))
+    triangle.solve(math.inf)
+    triangle.drop_slack(0.2)
+    triangle.add(frozenset({0, 1, 2}))  # says nothing new
+    triangle.solve(math.inf)
+    assert triangle._model.getInfo().simplex_iteration_count == 0
+    assert triangle.objective == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_step_by_step_the_optimum_is_the_one_of_all_rows_at_once(seed):
+    draw = np.random.default_rng(seed)
+    costs = draw.integers(1, 4, 30).astype(float)
+    rows = [frozenset(draw.choice(30, 6, replace=False).tolist()) for _ in range(60)]
+    steps, whole = Relaxation(costs, 1), Relaxation(costs, 1)
+    for begin in range(0, 60, 10):
+        for row in rows[begin : begin + 10]:
+            steps.add(row, 2)
+        steps.solve(math.inf)
+        steps.drop_slack(0.5)
+    for row in rows:
+        whole.add(row, 2)
+        steps.add(row, 2)
+    assert steps.solve(math.inf)
+    assert whole.solve(math.inf)
+    assert steps.objective == pytest.approx(whole.objective)
+
+
 def test_past_the_deadline_nothing_is_solved(triangle):
     assert not triangle.solve(-math.inf)
     assert triangle.solve_whole(-math.inf, {0, 1, 2}, 0.999, lambda bound: None) is None

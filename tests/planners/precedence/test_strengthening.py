@@ -70,6 +70,19 @@ def test_a_gap_of_the_cycles_is_closed_by_maxsat_where_it_is_installed(kernels):
 
 @NO_MAXSAT
 @pytest.mark.usefixtures("at_once")
+def test_with_more_blocks_rank_inequalities_take_the_place_of_maxsat_unless_it_is_asked_for(kernels, monkeypatch):
+    monkeypatch.setattr(hitting_set, "MOST_COUNTED", 10)
+    graph = build_graph(Problem(wide(80, 14, seed=4), PlanOptions(topple=False)))
+    ranked, counted = (HittingSetSolver(graph, prover=prover).solve(math.inf) for prover in (None, MAXSAT))
+    assert ranked.prover == HIGHS
+    assert ranked.rounds["ranks"] > 0
+    assert counted.prover == MAXSAT
+    assert counted.rounds["ranks"] == 0
+    assert ranked.bound == counted.bound
+
+
+@NO_MAXSAT
+@pytest.mark.usefixtures("at_once")
 def test_maxsat_that_is_stopped_leaves_a_bound_that_holds(kernels, monkeypatch):
     from smash.planners.precedence import maxsat
 

@@ -115,10 +115,14 @@ def _credit(rows: Rows, table: Table, row: int) -> None:
 
 
 def _fill(values: Floats, table: Table, subset: int) -> None:
-    """Work out a subset from those with a vertex less: no cycle where one leads nowhere and the rest has none."""
+    """Work out a subset from those with a vertex less: no cycle where one leads nowhere and the rest has none.
+
+    One vertex more keeps at most one more, so that what is one above the first of them is the most.
+    """
     kept = 0
     at = 0
     lowest = -1
+    enough = 0
     settled = False
     while (1 << at) <= subset:
         bit = 1 << at
@@ -126,8 +130,11 @@ def _fill(values: Floats, table: Table, subset: int) -> None:
             rest = subset ^ bit
             if lowest < 0:
                 lowest = at
+                enough = table.kept[rest] + 1
             if table.kept[rest] > kept:
                 kept = table.kept[rest]
+                if kept == enough:
+                    break
             if not settled and table.leads[at] & subset == 0:
                 settled = True
                 if table.kept[rest] == table.size[rest]:
