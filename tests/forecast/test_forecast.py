@@ -272,7 +272,18 @@ def test_a_plan_for_seconds_topples_no_stack_without_a_strip(tmp_path, buffers, 
     files = [tmp_path / name for name in ("instance.json", "model.json", "plan.json")]
     door.write_instance(instance, files[0])
     write_model(narrow({"headings": ()}), files[1])
-    seconds = ["--objective", "seconds", "--budget", "0.3", "--model", str(files[1]), "--out", str(files[2])]
+    seconds = [
+        "--objective",
+        "seconds",
+        "--planner",
+        "precedence",
+        "--budget",
+        "60",
+        "--model",
+        str(files[1]),
+        "--out",
+        str(files[2]),
+    ]
     ended = CliRunner().invoke(smash, ["plan", str(files[0]), *seconds])
     assert isinstance(ended.exception, Unsupported) == (not files[2].exists()) == bool(said)
     assert said in str(ended.exception)
