@@ -20,7 +20,7 @@ from smash.planners.precedence.compiler import GraphCompiler
 from smash.planners.precedence.cycles import CycleFinder
 from smash.planners.precedence.dive import dive
 from smash.planners.precedence.graph import Floats, PrecedenceGraph, build_graph
-from smash.planners.precedence.hitting_set import LONGEST, MOST_COMPILE_SECONDS, SLACK, STALL, STALL_ROUNDS, TRIES
+from smash.planners.precedence.hitting_set import MOST_COMPILE_SECONDS, STALL, STALL_ROUNDS
 from smash.planners.precedence.ranks import MOST_VERTICES, RankFinder
 from smash.planners.precedence.turns import turn_graph
 from smash.problem.certificate import ONE, PLACE_COST, Cases, Certificate, FirstPlace, Leaf, first_problems
@@ -28,6 +28,10 @@ from smash.problem.problem import Problem
 
 MOST_ROUNDS = 200
 """Of rank inequalities."""
+NEAR, LONGEST = 0.2, 8
+"""Sets grow along rows that are exceeded by less, of no more blocks."""
+NOISE = (0.5, 1.5, 2.5)
+"""How much chance decides about them, round after round: few inequalities are wanted here, each stands in the file."""
 COMPILE_SHARE = 0.2
 """Of the time, to wait for the kernels that find them."""
 
@@ -175,9 +179,9 @@ class _Prover:
             tight = [
                 frozenset(row)
                 for row, needed in zip(self._rows, self._needed, strict=True)
-                if len(row) <= LONGEST and float(values[row].sum()) - needed < SLACK
+                if len(row) <= LONGEST and float(values[row].sum()) - needed < NEAR
             ]
-            ranks = finder.violated(values, tight, MOST_VERTICES, 0.5 + round_ % TRIES, self.deadline)
+            ranks = finder.violated(values, tight, MOST_VERTICES, NOISE[round_ % len(NOISE)], self.deadline)
             if not sum([self._add_rank(row, needed) for row, needed in ranks]):
                 break
             leaf, reached, raised = self._leaf({})
