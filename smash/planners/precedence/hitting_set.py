@@ -32,7 +32,8 @@ HIGHS, MAXSAT = "HiGHS", "RC2"
 """What proves the bounds: the solver of linear and integer programs, or the one of the extra `maxsat`."""
 MAXSAT_MODULE = "pysat"
 
-TOLERANCE = 1e-6
+TOLERANCE = 1e-4
+"""Of a bound, in units: what HiGHS may be wrong by where each reduced cost is wrong by as much as it allows (1e-7)."""
 DIVE_SECONDS = 0.3
 """Longest time for making one feasible choice cheaper."""
 ROUNDINGS, ROUND_SHARE = 40, 0.1
