@@ -215,7 +215,7 @@ def test_episodes_of_two_robots_make_no_table_and_old_ones_are_the_panda_s(tmp_p
         f"{tmp_path.name}, pybullet",
         f"{tmp_path.name}, pybullet, six-1234abcd",
     ]
-    assert commands(sources[1])[0].endswith("--engine pybullet --robot six-1234abcd")
+    assert commands(sources[1])[0].endswith("--engine pybullet --robot six.toml")
 
 
 def test_scenes_are_not_put_together(tmp_path):

@@ -85,12 +85,15 @@ def test_with_more_blocks_rank_inequalities_take_the_place_of_maxsat_unless_it_i
 @pytest.mark.usefixtures("at_once")
 def test_maxsat_that_is_stopped_leaves_a_bound_that_holds(kernels, monkeypatch):
     from smash.planners.precedence import maxsat
+    from smash.planners.precedence.turns import turn_graph
 
     graph = build_graph(Problem(wide(60, 10, seed=2), PlanOptions(topple=False)))
     full = HittingSetSolver(graph).solve(math.inf).bound
     stopped = HittingSetSolver(graph)
-    monkeypatch.setattr(maxsat, "short_cycles", lambda turns, deadline, every=maxsat.short_cycles: list(every(turns)))
-    monkeypatch.setattr(maxsat, "perf_counter", iter([0.0] * 40 + [math.inf] * 9).__next__)
+    short = list(maxsat.short_cycles(turn_graph(graph)))
+    monkeypatch.setattr(maxsat, "short_cycles", lambda turns, deadline: short)
+    clock = itertools.chain(itertools.repeat(0.0, 40), itertools.repeat(math.inf))
+    monkeypatch.setattr(maxsat, "perf_counter", clock.__next__)
     found = stopped.solve(math.inf)
     assert found.bound <= full <= stopped.cost(found.chosen)
 
