@@ -16,4 +16,4 @@ def test_episodes_at_several_paces_are_refused():
         pytest.importorskip(name)
     done = CliRunner().invoke(command, [str(ROOT / "results" / "paces"), str(ROOT / "examples" / "figure1.json")])
     assert isinstance(done.exception, MixedScenes)
-    assert "(24 in default, 24 in default pace=0.1, 24 in default pace=0.25)" in str(done.exception)
+    assert "(96 in default, 96 in default pace=0.1, 96 in default pace=0.25)" in str(done.exception)
