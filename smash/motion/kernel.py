@@ -421,14 +421,13 @@ def step_free(
 
 
 @compiled
-def motion_free(
-    begin: Array, end: Array, smallest: float, arm: Arm, hand: Boxes, scene: Boxes, demands: Demands
+def free_from(
+    done: float, begin: Array, end: Array, smallest: float, arm: Arm, hand: Boxes, scene: Boxes, demands: Demands
 ) -> float:
-    """How far along the straight joint segment the robot gets before something is in the way: 1 is all of it.
+    """How far along the straight joint segment the robot gets from the share `done` on before something is in the way.
 
-    The segment's end itself is not looked at.
+    1 is all of it; the segment's end itself is not looked at.
     """
-    done = 0.0
     while done < 1.0:
         body = posture(arm, hand, begin + done * (end - begin))
         outside, wrist = slacks(arm, body, scene, demands)
@@ -436,6 +435,14 @@ def motion_free(
             return done
         done += step_free(begin, end, body, outside, wrist, smallest, arm.forearm)
     return 1.0
+
+
+@compiled
+def motion_free(
+    begin: Array, end: Array, smallest: float, arm: Arm, hand: Boxes, scene: Boxes, demands: Demands
+) -> float:
+    """`free_from` the beginning."""
+    return free_from(0.0, begin, end, smallest, arm, hand, scene, demands)
 
 
 @compiled
@@ -464,11 +471,7 @@ def polyline_free(waypoints: Array, smallest: float, arm: Arm, hand: Boxes, scen
         if blocked_at_a_glance(begin, end, arm, hand, scene, demands):
             return False
         done = step_free(begin, end, body, outside, wrist, smallest, arm.forearm)
-        while done < 1.0:
-            body = posture(arm, hand, begin + done * (end - begin))
-            outside, wrist = slacks(arm, body, scene, demands)
-            if outside <= 0.0 or wrist <= 0.0:
-                return False
-            done += step_free(begin, end, body, outside, wrist, smallest, arm.forearm)
+        if free_from(done, begin, end, smallest, arm, hand, scene, demands) < 1.0:
+            return False
         body, outside, wrist = ahead, outside_ahead, wrist_ahead
     return True
