@@ -15,6 +15,7 @@ class Code(NamedTuple):
     """What the drivers call."""
 
     unpack: Callable[..., None]
+    pack: Callable[..., None]
     settle: Callable[..., int]
     apply_move: Callable[..., int]
     lower_bound: Callable[..., int]
@@ -29,6 +30,7 @@ class Code(NamedTuple):
 
 INTERPRETED = Code(
     state.unpack,
+    state.pack,
     state.settle,
     state.apply_move,
     bound.lower_bound,

@@ -65,7 +65,10 @@ class Engine:
         """Return `moves` from the start as steps, each with the direct moves that follow it."""
         walk = Walk(problem, self.setting.class_of)
         self._walk_trail(walk, self.at_start() // 2)
+        row = self.start_row()
         for block, code in moves:
+            self.code.pack(self.task, self.cells, row, 0)
+            self.code.unpack(self.task, self.cells, row, 0)  # frees the slots that were left
             walk.move(block, code)
             self.code.apply_move(self.task, self.cells, block, code)
             self._walk_trail(walk, self.code.settle(self.task, self.cells))

@@ -6,7 +6,7 @@ from hypothesis import assume, given, settings
 from smash.planners.astar.compiled import INTERPRETED
 from smash.planners.astar.engine import Engine
 from smash.planners.astar.task import TOPPLED, make_setting
-from smash.problem import PlanOptions, StacksGoal, make_instance
+from smash.problem import Law, PlanOptions, StacksGoal, make_instance
 from smash.problem.sets.generators import generate
 from smash.problem.views.numbered import TOPPLE, Numbered
 from tests.oracle import optimal_cost
@@ -47,3 +47,18 @@ def test_the_larger_the_problem_the_fewer_expansions_between_two_looks_at_the_cl
     for figures in ([engine.share for engine in engines], [engine.tries for engine in engines]):
         assert figures == sorted(figures, reverse=True)
     assert engines[-1].share == 1
+
+
+def test_a_block_may_be_moved_from_floor_to_floor_any_number_of_times():
+    """Each such move begins a pile: there has to be room for as many as a plan makes."""
+    instance = make_instance(
+        name="x", blocks="ab", stacks=["s1", "s2", "s3"], start={"s1": "ab"}, goal=StacksGoal({"s1": "ba"})
+    )
+    problem = Numbered.of(instance)
+    options = PlanOptions(topple=False)
+    setting = make_setting(problem, options)
+    floor = len(instance.blocks) + setting.class_of[1]
+    steps = engine_of(instance, options).steps(problem, [(1, floor)] * 40 + [(0, floor)])
+    assert len(steps) == 43
+    report = Law(instance, options).check(problem.actions(steps))
+    assert report.accepted
