@@ -38,7 +38,8 @@ def zeros(size: int, kind: str, compiled: bool, value: int = 0) -> Ints:
         return [value] * size
     import numpy as np
 
-    array: Any = np.full(size, value, dtype=kind)
+    # Of what is never touched nothing is written: of a large state many nodes' room stays empty.
+    array: Any = np.full(size, value, dtype=kind) if value else np.zeros(size, dtype=kind)
     return array  # type: ignore[no-any-return]
 
 
