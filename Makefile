@@ -209,9 +209,10 @@ scaling: needs-analysis ## time over 4 to 10,000 blocks, per planner: curves and
 	$(BIN)/smash scaling --out runs/scaling
 	$(BIN)/python -m smash_analysis.scaling runs/scaling
 
-best-known: needs-pddl ## best known costs and bounds of the open instances, and what is still open (20 minutes)
+best-known: needs-pddl ## best known costs and bounds of the open instances, and what is still open (40 minutes)
 	$(BIN)/python -m smash sweep experiments/open.toml --out runs/open $(if $(DASK),--dask $(DASK))
-	$(BIN)/python -m smash best-known update runs/open
+	$(BIN)/python -m smash sweep experiments/open-2.toml --out runs/open-2 $(if $(DASK),--dask $(DASK))
+	$(BIN)/python -m smash best-known update runs/open runs/open-2
 	$(BIN)/python -m smash best-known table --into docs/open-instances.md
 
 dataset: needs-planning ## the instance sets with proven optima, best plans, certificates and Croissant metadata: results/dataset (a minute)

@@ -208,6 +208,18 @@ def test_a_damaged_list_is_one_line(known):
         assert "\n" not in str(error.value)
 
 
+def test_the_table_counts_each_generation_of_sets_apart(tmp_path):
+    listed = BestKnown(tmp_path)
+    listed.add_variant(NAME, "topple")
+    listed.offer_plan(NAME, solved("topple").actions, SOMEBODY)
+    listed.offer_bound(NAME, PlanOptions(), len(solved("topple").actions), SOMEBODY)
+    assert "Proven optimal: 1 of 1; of the first sets 1 of 1." in open_table(listed)
+    listed.add_variant("open-few-buffers-2-00", "no-topple")
+    text = open_table(listed)
+    assert "Proven optimal: 1 of 2; of the first sets 1 of 1; of the harder sets 0 of 1." in text
+    assert "| open-few-buffers-2 | – | 0 of 1 |" in text
+
+
 def test_a_page_without_marks_is_refused():
     with pytest.raises(MalformedFile, match=r"page\.md"):
         put_between(BEGIN, "table", "page.md")

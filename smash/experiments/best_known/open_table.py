@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from smash.experiments.best_known.files import goal_kind
 from smash.experiments.best_known.standing import BestKnown, Entry, Found, open_instances
 from smash.problem.errors import MalformedFile
+from smash.problem.sets.open_instances import GENERATIONS
 
 BEGIN = "<!-- made by `smash best-known table`: begin -->\n"
 END = "<!-- made by `smash best-known table`: end -->\n"
@@ -14,7 +15,7 @@ SOURCE = "<!-- from: make best-known -> results/best-known/best-known.csv -->"
 
 
 def open_table(known: BestKnown) -> str:
-    """Return how much of each family and variant is proven, and a row for everything that is not."""
+    """Return how much of each generation, family and variant is proven, and a row for everything that is not."""
     entries = known.sorted()
     rows = [_row(entry) for entry in entries if not entry.proven]
     variants = list(dict.fromkeys(entry.variant for entry in entries))
@@ -23,7 +24,7 @@ def open_table(known: BestKnown) -> str:
     head = ("instance", "blocks", "stacks", "buffers", "goal", "variant", "best", "bound", "gap", "best by", "bound by")
     return "\n".join(
         [
-            f"Proven optimal: {sum(entry.proven for entry in entries)} of {len(entries)}.",
+            _standing(entries),
             SOURCE,
             "",
             *_markdown(["proven, of all", *variants], counts),
@@ -55,9 +56,22 @@ def _family(entry: Entry) -> str:
     return entry.instance.rpartition("-")[0]
 
 
+def _standing(entries: Sequence[Entry]) -> str:
+    """Return how many are proven, of all and of each generation, so that the earlier counts go on as they were."""
+    shares = [f"Proven optimal: {_share(entries)}"]
+    for generation, families in GENERATIONS.items():
+        mine = [entry for entry in entries if _family(entry) in families]
+        shares += [f"of the {generation} sets {_share(mine)}"] if mine else []
+    return f"{'; '.join(shares)}."
+
+
+def _share(entries: Sequence[Entry]) -> str:
+    return f"{sum(entry.proven for entry in entries)} of {len(entries)}"
+
+
 def _count(entries: Sequence[Entry], family: str, variant: str) -> str:
     mine = [entry for entry in entries if _family(entry) == family and entry.variant == variant]
-    return f"{sum(entry.proven for entry in mine)} of {len(mine)}"
+    return _share(mine) if mine else "–"
 
 
 def _row(entry: Entry) -> list[str]:

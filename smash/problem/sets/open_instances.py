@@ -4,7 +4,8 @@ Each family asks for one thing that the paper's sizes do not: few buffers at mor
 hundreds of blocks, partial `on` goals of the classical blocks world, starts with blocks already toppled, many
 short stacks (where it is hard to say which of them to topple). Caps on a topple are variants of every instance.
 The sizes of a family go from those that are solved in a moment to those that nobody has solved yet:
-`smash best-known` keeps the list.
+`smash best-known` keeps the list. Where most of a generation is proven, another one goes on from there, and the
+earlier one stays as it is.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ class Shape:
     toppled: float = 0.0
 
 
-FAMILIES: dict[str, tuple[Shape, ...]] = {
+_FIRST: dict[str, tuple[Shape, ...]] = {
     "open-few-buffers": tuple(Shape(blocks, 3, buffers) for blocks in (12, 15, 20, 30) for buffers in (0, 1, 2)),
     "open-wide": tuple(
         Shape(blocks, stacks, 12)
@@ -57,6 +58,27 @@ FAMILIES: dict[str, tuple[Shape, ...]] = {
         *(Shape(blocks, 2 * blocks // 5, 0) for blocks in (100, 200, 300, 500)),
     ),
 }
+_HARDER: dict[str, tuple[Shape, ...]] = {
+    "open-few-buffers-2": tuple(Shape(blocks, 3, buffers) for blocks, buffers in ((18, 0), (24, 1), (26, 2), (40, 2))),
+    "open-wide-2": tuple(Shape(blocks, stacks, 12) for blocks, stacks in ((200, 8), (300, 15), (700, 35), (1000, 50))),
+    "open-on-2": tuple(
+        Shape(blocks, stacks, 0, "on", listed)
+        for blocks, stacks, listed in ((60, 10, 1.0), (90, 10, 1.0), (200, 16, 0.5), (200, 16, 1.0))
+    ),
+    "open-positions-2": tuple(
+        Shape(blocks, 4, buffers, "positions", 0.4, toppled)
+        for blocks, buffers, toppled in ((34, 1, 0.0), (50, 1, 0.0), (100, 4, 0.3), (200, 4, 0.3))
+    ),
+    "open-short-stacks-2": (
+        *(Shape(blocks, blocks // 3, 0, "on", 0.5) for blocks in (200, 400)),
+        *(Shape(blocks, 2 * blocks // 5, 0) for blocks in (700, 1000)),
+    ),
+}
+
+GENERATIONS: dict[str, dict[str, tuple[Shape, ...]]] = {"first": _FIRST, "harder": _HARDER}
+"""Name of a generation of sets -> its sets, as `FAMILIES` has them."""
+
+FAMILIES: dict[str, tuple[Shape, ...]] = _FIRST | _HARDER
 """Set name -> the shapes of its instances, in the order of their numbers."""
 
 
