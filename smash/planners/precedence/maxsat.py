@@ -19,6 +19,8 @@ from pysat.formula import WCNF
 from smash.planners.precedence.graph import Floats
 from smash.planners.precedence.turns import TurnGraph
 
+SOLVER = "m22"
+"""MiniSat 2.2: it looks at its conflicts one by one; Glucose only where it restarts, which may be minutes from now."""
 CONFLICTS = 5_000
 """Between two looks at the clock: a fraction of a second."""
 
@@ -89,7 +91,7 @@ class _CoreGuided(RC2):  # type: ignore[misc]
         self._on_bound = on_bound
         self._told = 0
         self._minimizing = False
-        super().__init__(formula, adapt=True, exhaust=True, minz=True)
+        super().__init__(formula, solver=SOLVER, adapt=True, exhaust=True, minz=True)
 
     def tell(self) -> None:
         """Tell the bound where it is better than the last one.

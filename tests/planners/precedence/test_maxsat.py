@@ -1,12 +1,13 @@
 """The fewest blocks put aside, proven a second time by core-guided MaxSAT."""
 
+import itertools
 import math
 import random
 from time import perf_counter
 
 import pytest
 
-from smash.planners.precedence import hitting_set
+from smash.planners.precedence import hitting_set, maxsat
 from smash.planners.precedence.graph import build_graph
 from smash.planners.precedence.hitting_set import HIGHS, MAXSAT, HittingSetSolver
 from smash.problem import PlanOptions
@@ -16,6 +17,8 @@ from tests.arrangements import wide
 from tests.planners.precedence.events import hits_all
 
 pytest.importorskip("pysat", reason="python-sat of the extra `maxsat` is not installed")
+
+from pysat.solvers import Solver
 
 from tests.planners.precedence.maxsat import fewest_aside
 
@@ -62,3 +65,15 @@ def test_three_hundred_blocks_on_thirty_stacks(seed, kernels):
     solver = HittingSetSolver(graph, prover=HIGHS)
     found = solver.solve(perf_counter() + 300)
     assert found.bound <= 2 * fewest_aside(graph) <= solver.cost(found.chosen)
+
+
+def test_the_solver_stops_at_the_conflicts_that_it_is_allowed():
+    """The deadline is looked at between two allowances (ten pigeons in nine holes; Glucose goes on to a restart)."""
+    holes, pigeons = range(9), range(10)
+    name = {(pigeon, hole): 9 * pigeon + hole + 1 for pigeon in pigeons for hole in holes}
+    clauses = [[name[pigeon, hole] for hole in holes] for pigeon in pigeons]
+    clauses += [[-name[a, hole], -name[b, hole]] for hole in holes for a, b in itertools.combinations(pigeons, 2)]
+    with Solver(maxsat.SOLVER, bootstrap_with=clauses) as solver:
+        solver.conf_budget(10)
+        assert solver.solve_limited() is None
+        assert solver.accum_stats()["conflicts"] <= 10
