@@ -89,6 +89,7 @@ class _PlacesProver:
         for name in self._structure():
             self._send(name, self._checker.row(name))
         self._root = _Case({}, NamedLeaf([]), 0, None)
+        self._proven = 0
 
     def _structure(self) -> Iterator[Key]:
         """Yield the names of the rows that need no cycle."""
@@ -114,24 +115,31 @@ class _PlacesProver:
     def prove(self) -> int:
         """Branch until the least case is closed, or time is out; return the bound."""
         ties = itertools.count(step=-1)
-        self._root = self._case({}, ROUNDS)
+        self._root = self._case({}, self._root.leaf, ROUNDS)
         waiting = [(self._root.bound, next(ties), self._root)]
         while (case := waiting[0][2]).choice is not None and perf_counter() < self._deadline:
             heapq.heappop(waiting)
             fixed = [{**case.fixed, case.choice: value} for value in (1, 0)]
-            taken, untaken = (self._case(values, DEEP_ROUNDS) for values in fixed)
+            taken, untaken = (self._case(values, case.leaf, DEEP_ROUNDS) for values in fixed)
             case.parts = taken, untaken
             for part in case.parts:
                 heapq.heappush(waiting, (part.bound, next(ties), part))
-        return self._checker.base + waiting[0][0]
+        self._proven = waiting[0][0]
+        return self._checker.base + self._proven
 
-    def _case(self, fixed: dict[Key, int], rounds: int) -> _Case:
-        """Cut the relaxation of a case until no cycle is violated, or `rounds` times while fractions are left."""
+    def _case(self, fixed: dict[Key, int], leaf: NamedLeaf, rounds: int) -> _Case:
+        """Cut the relaxation of a case until no cycle is violated, or `rounds` times while fractions are left.
+
+        Args:
+            fixed: the choices that are made.
+            leaf: weights that close the case as far as nothing better is found.
+            rounds: see above.
+        """
         low, high = self._free_low.copy(), self._free_high.copy()
         for key, value in fixed.items():
             low[self._column[key]] = high[self._column[key]] = value
         self._solver.changeColsBounds(len(low), np.arange(len(low), dtype=np.int32), low, high)
-        best = _Case(fixed, NamedLeaf([]), self._checker.least(NamedLeaf([]), fixed), None)
+        best = _Case(fixed, leaf, self._checker.least(leaf, fixed), None)
         for round_ in itertools.count():
             left = self._deadline - perf_counter()
             if left <= 0:
@@ -180,10 +188,12 @@ class _PlacesProver:
         return best
 
     def _fractional(self, values: Floats) -> Key | None:
-        """Return the choice to branch on, None where all are whole."""
+        """Return the choice to branch on, None where all are whole: a place, where one is open."""
         open_values = np.abs(values - np.round(values))
-        choice = int(np.argmax(open_values)) if len(values) else 0
-        return self._model.names[choice] if len(values) and open_values[choice] > INTEGRAL else None
+        fractional = np.flatnonzero(open_values > INTEGRAL).tolist()
+        names = self._model.names
+        choice = max(fractional, key=lambda number: (names[number][0] == "at", open_values[number]), default=None)
+        return None if choice is None else names[choice]
 
     def _add(self, loop: Loop) -> bool:
         """Take up a cycle, less the events and conditions that it does not need; whether it was new."""
@@ -218,24 +228,33 @@ class _PlacesProver:
 
     def stated(self) -> PlacesProof:
         """Return the proof, with the cycles that it uses."""
-        used = sorted({int(name[1]) for name in _rows_of(self._root) if name[0] == "cycle"})
+        proof = self._without_idle_cases(self._root, self._proven)
+        used = sorted({int(name[1]) for name in _rows_of(proof) if name[0] == "cycle"})
         number = {cycle: position for position, cycle in enumerate(used)}
-        return PlacesProof([self._cycles[cycle] for cycle in used], _tree(self._root, number))
+        return PlacesProof([self._cycles[cycle] for cycle in used], _renumbered(proof, number))
+
+    def _without_idle_cases(self, case: _Case, proven: int) -> NamedLeaf | NamedCases:
+        """Return the tree of a case; where the weights of one of two cases prove as much for both, they stand alone."""
+        if case.parts is None or case.choice is None:
+            return case.leaf
+        taken, untaken = (self._without_idle_cases(part, proven) for part in case.parts)
+        for leaf in (case.leaf, taken, untaken):
+            if isinstance(leaf, NamedLeaf) and self._checker.least(leaf, case.fixed) >= proven:
+                return leaf
+        return NamedCases(list(case.choice), taken, untaken)
 
 
-def _rows_of(case: _Case) -> Iterator[list[str | int]]:
-    if case.parts is None:
-        yield from (name for name, _ in case.leaf.rows)
+def _rows_of(proof: NamedLeaf | NamedCases) -> Iterator[list[str | int]]:
+    if isinstance(proof, NamedCases):
+        yield from _rows_of(proof.taken)
+        yield from _rows_of(proof.untaken)
     else:
-        for part in case.parts:
-            yield from _rows_of(part)
+        yield from (name for name, _ in proof.rows)
 
 
-def _tree(case: _Case, number: dict[int, int]) -> NamedLeaf | NamedCases:
-    if case.parts is not None:
-        assert case.choice is not None
-        taken, untaken = case.parts
-        return NamedCases(list(case.choice), _tree(taken, number), _tree(untaken, number))
+def _renumbered(proof: NamedLeaf | NamedCases, number: dict[int, int]) -> NamedLeaf | NamedCases:
+    if isinstance(proof, NamedCases):
+        return NamedCases(proof.choice, _renumbered(proof.taken, number), _renumbered(proof.untaken, number))
     return NamedLeaf(
-        [(["cycle", number[int(name[1])]] if name[0] == "cycle" else name, weight) for name, weight in case.leaf.rows]
+        [(["cycle", number[int(name[1])]] if name[0] == "cycle" else name, weight) for name, weight in proof.rows]
     )
