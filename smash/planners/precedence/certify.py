@@ -44,24 +44,27 @@ Fixed = dict[int, int]
 """Choices that a case fixes: 1 taken, 0 not."""
 
 
-def certify(problem: Problem, deadline: float, known: Iterable[tuple[int, ...]] = ()) -> Certificate:
+def certify(
+    problem: Problem, deadline: float, known: Iterable[tuple[int, ...]] = (), *, cost: int | None = None
+) -> Certificate:
     """Prove as good a lower bound as the time allows, and return the proof.
 
     Args:
         problem: a plain, feasible one.
         deadline: when to stop, in seconds of `time.perf_counter`; the certificate then proves what it can.
         known: cycles found before (`HittingSet.cycles`), to start from; none of a full hand's.
+        cost: of a plan that is known; no more than that is proven by a choice of places, where that is part of it.
     """
     part = _Part([], [], Leaf([]), 0)
     firsts: list[FirstPlace] = []
     if problem.instance.hand is None:
-        part = _proof(problem, deadline, known)
+        part = _proof(problem, deadline, known, cost)
         bound = part.bound
     else:
         rests = first_problems(problem.instance, problem.options)
         for number, (place, rest) in enumerate(rests.items()):
             until = perf_counter() + max(0.0, deadline - perf_counter()) / (len(rests) - number)
-            of_rest = _proof(Problem(rest, problem.options), until, ())
+            of_rest = _proof(Problem(rest, problem.options), until, (), None if cost is None else cost - PLACE_COST)
             firsts.append(
                 FirstPlace(place, of_rest.bound, of_rest.cycles, of_rest.proof, of_rest.ranks, of_rest.places)
             )
@@ -91,13 +94,13 @@ class _Part(NamedTuple):
     places: PlacesProof | None = None
 
 
-def _proof(problem: Problem, deadline: float, known: Iterable[tuple[int, ...]]) -> _Part:
+def _proof(problem: Problem, deadline: float, known: Iterable[tuple[int, ...]], cost: int | None) -> _Part:
     """Return a proof for an empty hand, one that chooses places where that proves more."""
     if not places_decide(problem):
         return _plain_proof(problem, deadline, known)
     now = perf_counter()
     plain = _plain_proof(problem, now + CYCLES_SHARE * (deadline - now), known)
-    chosen = certify_places(problem, deadline, plain.bound)
+    chosen = certify_places(problem, deadline, plain.bound, cost)
     return plain if chosen is None else _Part([], [], Leaf([]), chosen[1], chosen[0])
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import heapq
 import itertools
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from time import perf_counter
@@ -41,19 +42,22 @@ RAY = 10_000
 """What the weights of a case without values are multiplied by: they prove whatever is asked for."""
 
 
-def certify_places(problem: Problem, deadline: float, enough: int) -> tuple[PlacesProof, int] | None:
-    """Return a proof that chooses the towers' places, and its bound; None where it is no part of the problem.
+def certify_places(
+    problem: Problem, deadline: float, known: int, cost: int | None = None
+) -> tuple[PlacesProof, int] | None:
+    """Return a proof that chooses the towers' places, and its bound; None where it proves no more than is known.
 
     Args:
         problem: a plain, feasible one with an empty hand.
         deadline: when to stop [s, `perf_counter`]; what is proven until then is returned.
-        enough: a bound that this one has to beat to be of use.
+        known: a bound that is proven otherwise.
+        cost: of a plan that is known: a proof of it is enough.
     """
-    if not places_decide(problem) or too_large(problem):
+    if known == cost or not places_decide(problem) or too_large(problem):
         return None
     prover = _PlacesProver(problem, deadline)
-    bound = prover.prove()
-    return None if bound <= enough else (prover.stated(), bound)
+    bound = prover.prove(cost)
+    return None if bound <= known else (prover.stated(), bound)
 
 
 @dataclass(slots=True)
@@ -112,12 +116,13 @@ class _PlacesProver:
         )
         self._names.append(name)
 
-    def prove(self) -> int:
-        """Branch until the least case is closed, or time is out; return the bound."""
+    def prove(self, cost: int | None) -> int:
+        """Branch until the least case is closed or reaches `cost`, or time is out; return the bound."""
+        enough = math.inf if cost is None else cost - self._checker.base
         ties = itertools.count(step=-1)
         self._root = self._case({}, self._root.leaf, ROUNDS)
         waiting = [(self._root.bound, next(ties), self._root)]
-        while (case := waiting[0][2]).choice is not None and perf_counter() < self._deadline:
+        while (case := waiting[0][2]).choice is not None and case.bound < enough and perf_counter() < self._deadline:
             heapq.heappop(waiting)
             fixed = [{**case.fixed, case.choice: value} for value in (1, 0)]
             taken, untaken = (self._case(values, case.leaf, DEEP_ROUNDS) for values in fixed)
