@@ -1,13 +1,19 @@
 """Certificates that choose the places of towers: they never claim too much, and nothing in them can be changed."""
 
+import contextlib
 import copy
+import itertools
 import math
+import random
 from time import perf_counter
 
 import msgspec
+import numpy as np
 import pytest
 
 from smash.experiments.best_known.standing import open_instances
+from smash.planners.milp.arrays import MilpBuilder
+from smash.planners.milp.solvers import highs
 from smash.planners.precedence.certify import certify
 from smash.problem import OnGoal, PlanOptions, StacksGoal, make_instance
 from smash.problem.certificate import Certificate, Leaf, certificate_text, proven_bound
@@ -226,3 +232,43 @@ def test_it_is_cut_short_by_the_deadline():
     instance, options = two_bottoms(), PlanOptions()
     short = certify(Problem(instance, options), -math.inf)
     assert proven_bound(instance, options, short) == short.bound <= 3
+
+
+def cheapest_of_all_rows(problem, draw, tried):
+    """Return the least cost of values that fulfil the structure and every drawn cycle that the checker takes."""
+    checker = PlacesChecker(problem.posed, problem.options)
+    bases = [*checker.bottoms, *checker.loose]
+    blocks = problem.instance.blocks
+    pairs = list(itertools.permutations(checker.loose, 2))
+    conditions = [["removed", b] for b in blocks] + [["stays", b] for b in blocks]
+    conditions += [["at", b, q] for b in bases for q in checker.piles] + [["under", *pair] for pair in pairs]
+    rows = [checker.row(("place", b)) for b in bases] + [checker.row(("floor", q)) for q in checker.piles]
+    rows += [checker.row(("order", *pair, q)) for pair in pairs for q in checker.piles]
+    rows += [checker.row(("falls", b)) for b in checker.falls]
+    rows += [checker.row(("above", b)) for (kind, b, *_) in checker.costs if kind == "removed" and checker.spot[b][1]]
+    for _ in range(tried):
+        events = [(draw.choice(["removed", "placed"]), draw.choice(blocks)) for _ in range(draw.randint(2, 4))]
+        given = draw.sample(conditions, min(len(conditions), draw.randint(0, 3)))
+        with contextlib.suppress(RefusedCertificate):
+            rows.append(checker.cycle_row(0, ConditionalCycle(events, given)))
+    keys = [*checker.costs, *(("under", *pair) for pair in pairs)]
+    column = {key: number for number, key in enumerate(keys)}
+    builder = MilpBuilder(math.inf)
+    builder.add_columns(len(keys), cost=np.array([float(checker.cost(key)) for key in keys]))
+    for row in {(row.least, tuple(row.signs.items())): row for row in rows}.values():
+        columns = [column[key] for key in row.signs]
+        builder.add_rows([0] * len(columns), columns, [float(s) for s in row.signs.values()], count=1, lower=row.least)
+    solved = highs.solve(builder.build(), time_limit=60.0, seed=1)
+    assert solved.status == "optimal"
+    return checker.base + round(solved.bound)
+
+
+@pytest.mark.parametrize("part", range(4))
+def test_every_plan_fulfils_every_cycle_that_the_checker_takes(part):
+    """Whoever writes a certificate: what is drawn at random and taken never asks for more than a cheapest plan does."""
+    for seed in range(12 * part, 12 * part + 12):
+        problem = related(seed, hand=0.0, stacks=2)
+        if problem.infeasible is None and problem.posed.goal.on and len(problem.instance.blocks) > 1:
+            assert cheapest_of_all_rows(problem, random.Random(seed), 1500) <= optimal_cost(
+                problem.instance, problem.options
+            ), seed
