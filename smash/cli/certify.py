@@ -9,7 +9,7 @@ import click
 
 from smash.cli import fail
 from smash.cli.choices import budget_option
-from smash.problem.certificate import certificate_text, why_not_certified
+from smash.problem.certificate import Certificate, FirstPlace, certificate_text, why_not_certified
 from smash.problem.files.documents import write_text
 from smash.problem.files.instances import read_instance
 from smash.problem.files.plans import read_plan
@@ -27,8 +27,9 @@ def command(instance: Path, plan: Path, budget: float, out: Path) -> None:
 
     Exit 6 where its argument does not cover the instance: with carries, lifts, costs, blocks on a carrier.
 
-    The certificate lists cycles of precedence and the arithmetic of the bound; `smash verify` follows it
-    without a solver. It counts no buffers: where few of them make plans dearer, it stays below.
+    The certificate lists cycles of precedence and the arithmetic of the bound, and for `on` goals where locations
+    are few the places of towers; `smash verify` follows it without a solver. It counts no places to wait: where few
+    buffers make plans dearer, it stays below.
 
     \b
     Example:
@@ -47,9 +48,10 @@ def command(instance: Path, plan: Path, budget: float, out: Path) -> None:
         fail(f"{instance}: no certificate proves a bound here: {why_not}", 6)
     if asked.infeasible is not None:
         fail(f"{instance}: proven infeasible: {asked.infeasible}", 3)
-    certificate = certify(asked, perf_counter() + budget)
+    certificate = certify(asked, perf_counter() + budget, cost=filed.cost)
     write_text(out, certificate_text(certificate))
     note = f" ({certificate.note})" if certificate.note else ""
-    cycles = len(certificate.cycles) + sum(len(first.cycles) for first in certificate.first_places)
+    parts: list[Certificate | FirstPlace] = [certificate, *certificate.first_places]
+    cycles = sum(len(part.cycles if part.places is None else part.places.cycles) for part in parts)
     least = counted(certificate.bound, "action")
     click.echo(f"proven by {counted(cycles, 'cycle')}: every plan has at least {least}{note}")

@@ -18,14 +18,14 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, cast
 
 import msgspec
 
 from smash.problem.actions.registry import kinds_of
-from smash.problem.errors import MalformedFile, Unsupported
+from smash.problem.certificate_places import ONE, Key, PlacesProof, proven_by_places, wrong_relations
+from smash.problem.errors import RefusedCertificate, Unsupported
 from smash.problem.files.documents import convert, parse_json, read_bytes
 from smash.problem.hand import after_place, distinct_locations
 from smash.problem.model import Instance, OnGoal, PlanOptions, StacksGoal
@@ -33,8 +33,6 @@ from smash.problem.problem import Problem
 from smash.problem.views.posed import posed
 
 CERTIFICATE_FORMAT = "smash-certificate/1"
-ONE = 1_000_000
-"""Weights are whole millionths of an action."""
 MOST_OF_A_RANK = 16
 """Blocks of one rank: the checker may have to look at each of its subsets."""
 PLACE_COST = 1
@@ -63,12 +61,14 @@ class FirstPlace(msgspec.Struct, forbid_unknown_fields=True):
     cycles: list[list[str]]
     proof: Leaf | Cases
     ranks: list[list[str]] = msgspec.field(default_factory=list)
+    places: PlacesProof | None = None
 
 
 class Certificate(msgspec.Struct, forbid_unknown_fields=True):
     """A `smash-certificate/1` document; `note` says what it does not prove.
 
-    `first_places` stand in place of `cycles` and `proof` where the hand holds a block at the start.
+    `first_places` stand in place of `cycles` and `proof` where the hand holds a block at the start, `places` where the
+    goal is an `on` goal and the choice of its towers' places is part of the argument.
     """
 
     format: Literal["smash-certificate/1"]
@@ -81,6 +81,7 @@ class Certificate(msgspec.Struct, forbid_unknown_fields=True):
     note: str = ""
     first_places: list[FirstPlace] = msgspec.field(default_factory=list)
     ranks: list[list[str]] = msgspec.field(default_factory=list)
+    places: PlacesProof | None = None
 
 
 def read_certificate(path: str | os.PathLike[str]) -> Certificate:
@@ -101,19 +102,9 @@ def certificate_text(certificate: Certificate) -> str:
     for part in (document, *document.get("first_places", ())):
         if not part["ranks"]:
             del part["ranks"]
+        if part["places"] is None:
+            del part["places"]
     return json.dumps(document) + "\n"
-
-
-class RefusedCertificate(MalformedFile):
-    """A certificate that does not prove what it says."""
-
-    exit_code = 3
-
-    def __init__(self, problem: str) -> None:
-        super().__init__("certificate", problem)
-
-
-_Key = tuple[str | int, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,7 +164,7 @@ def _proven_first_places(instance: Instance, options: PlanOptions, certificate: 
     places = [first.place for first in certificate.first_places]
     if sorted(places) != sorted(rests) or not places:
         raise RefusedCertificate(f"it is about the first places {sorted(places)}, not {sorted(rests)}")
-    if certificate.cycles or certificate.ranks or certificate.proof != Leaf([]):
+    if certificate.places is not None or _has_plain_proof(certificate):
         raise RefusedCertificate("it has a proof beside those of its first places")
     for first in certificate.first_places:
         bound = _proven(rests[first.place], options, first)
@@ -183,7 +174,12 @@ def _proven_first_places(instance: Instance, options: PlanOptions, certificate: 
 
 
 def _proven(instance: Instance, options: PlanOptions, stated: Certificate | FirstPlace) -> int:
-    checker = _Checker(posed(instance, falls=options.topple), options)
+    asked = posed(instance, falls=options.topple)
+    if stated.places is not None:
+        if _has_plain_proof(stated):
+            raise RefusedCertificate("it has a proof beside that of its places")
+        return proven_by_places(asked, options, stated.places)
+    checker = _Checker(asked, options)
     for number, cycle in enumerate(stated.cycles):
         checker.add_cycle(number, cycle)
     for number, rank in enumerate(stated.ranks):
@@ -191,13 +187,17 @@ def _proven(instance: Instance, options: PlanOptions, stated: Certificate | Firs
     return checker.base + checker.least(stated.proof, frozenset(), frozenset())
 
 
+def _has_plain_proof(stated: Certificate | FirstPlace) -> bool:
+    return bool(stated.cycles or stated.ranks or stated.proof != Leaf([]))
+
+
 class _Row(NamedTuple):
     """So many blocks have to be freed, and how many of them each choice frees."""
 
     needed: int
-    frees: dict[_Key, int]
+    frees: dict[Key, int]
 
-    def left(self, taken: frozenset[_Key]) -> int:
+    def left(self, taken: frozenset[Key]) -> int:
         """Return how many are still to be freed where some choices are taken."""
         return self.needed - sum(count for key, count in self.frees.items() if key in taken)
 
@@ -210,7 +210,7 @@ class _Checker:
         self.start = {location: pile for location, pile in instance.start.items() if pile}
         if isinstance(goal, OnGoal):
             self.towers: dict[str | int, tuple[str, ...]] = dict(enumerate(goal.towers()))
-            wrong = _wrong_relations(instance, goal)
+            wrong = wrong_relations(instance, goal)
         else:
             piles = goal.stacks if isinstance(goal, StacksGoal) else goal.stacks()
             self.towers = {location: tuple(pile) for location, pile in piles.items()}
@@ -228,7 +228,7 @@ class _Checker:
         loose = self.leaves - self.placed
         self.must_fall = {block for block in loose if self.at[block][0] in stacks}
         self.base = 2 * (len(self.placed) + len(loose - self.must_fall))
-        self.choices: dict[_Key, _Choice] = {}
+        self.choices: dict[Key, _Choice] = {}
         for location, pile in self.leaving.items():
             if location in stacks:
                 size = min(options.max_topple or len(pile), len(pile))
@@ -281,7 +281,7 @@ class _Checker:
                     return True
         return tower == location
 
-    def least(self, proof: Leaf | Cases, taken: frozenset[_Key], banned: frozenset[_Key]) -> int:
+    def least(self, proof: Leaf | Cases, taken: frozenset[Key], banned: frozenset[Key]) -> int:
         """Return what the choices cost at least, where those of `taken` are made and those of `banned` are not."""
         if isinstance(proof, Cases):
             key = tuple(proof.choice)
@@ -289,7 +289,7 @@ class _Checker:
                 raise RefusedCertificate(f"a case distinguishes {list(key)}, which is no choice")
             return min(self.least(proof.taken, taken | {key}, banned), self.least(proof.untaken, taken, banned | {key}))
         total = ONE * sum(self.choices[key].cost for key in taken)
-        load: dict[_Key, int] = {}
+        load: dict[Key, int] = {}
         for number, weight in proof.weights:
             if not 0 <= number < len(self.rows) or weight < 0:
                 raise RefusedCertificate(f"a leaf gives cycle {number} the weight {weight}")
@@ -352,23 +352,3 @@ def _wrong_positions(instance: Instance, piles: dict[str, tuple[str, ...]]) -> s
             if wanted.get(block, (location, rank)) != (location, rank) or (rank < len(goal) and goal[rank] != block):
                 wrong.add(block)
     return wrong
-
-
-def _wrong_relations(instance: Instance, goal: OnGoal) -> set[str]:
-    """Return the blocks that stand on another than wanted, or where another or none is wanted."""
-    carried = {under: upper for upper, under in goal.on.items()}
-    grounded, clear = {*goal.bottom, *goal.ontable}, frozenset(goal.clear)
-    wrong = set()
-    for pile in instance.start.values():
-        for under, block in _pairs(pile):
-            misplaced = goal.on.get(block, under) != under or (block in grounded and under is not None)
-            if misplaced or (under is not None and (under in clear or carried.get(under, block) != block)):
-                wrong.add(block)
-    return wrong
-
-
-def _pairs(pile: Iterable[str]) -> Iterable[tuple[str | None, str]]:
-    under: str | None = None
-    for block in pile:
-        yield under, block
-        under = block

@@ -20,6 +20,15 @@ class MalformedFile(SmashError):
         super().__init__(f"{where}: {problem}")
 
 
+class RefusedCertificate(MalformedFile):
+    """A certificate that does not prove what it says."""
+
+    exit_code = 3
+
+    def __init__(self, problem: str) -> None:
+        super().__init__("certificate", problem)
+
+
 class RefusedPlan(SmashError):
     """A well-formed plan that the law refuses, given where a legal one is needed."""
 

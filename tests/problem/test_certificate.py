@@ -59,8 +59,7 @@ def test_the_certificate_proves_the_planners_bound(instance, options):
         return
     result = PrecedencePlanner().solve(instance, SolveOptions(options.topple, options.max_topple), 10.0)
     proven = proven_bound(instance, options, certificate_of(instance, options))
-    # Which piles are emptied for `on` goals is no part of the certificate's argument.
-    assert proven <= result.lower_bound if isinstance(instance.goal, OnGoal) else proven == result.lower_bound
+    assert proven == result.lower_bound
 
 
 @pytest.mark.parametrize("topple", [True, False])

@@ -114,9 +114,9 @@ def open_entries() -> Iterator[Entry]:
 def certificate_of(entry: Entry) -> Certificate | None:
     """Return a certificate that proves the cost of an entry optimal, or None where none was found.
 
-    A certificate counts no buffers, so where few of them make plans dearer there is none.
+    A certificate counts no places to wait, so where few of them make plans dearer there is none.
     """
     if entry.status != "optimal" or why_not_certified(entry.instance, entry.options) is not None:
         return None
-    found = certify(Problem(entry.instance, entry.options), perf_counter() + PROOF_SECONDS)
+    found = certify(Problem(entry.instance, entry.options), perf_counter() + PROOF_SECONDS, cost=entry.cost)
     return found if found.bound == entry.cost else None

@@ -15,15 +15,18 @@ from typing import NamedTuple
 import highspy
 import numpy as np
 
+from smash.planners.precedence.certify_places import certify_places
 from smash.planners.precedence.compiled import Kernels
 from smash.planners.precedence.compiler import GraphCompiler
 from smash.planners.precedence.cycles import CycleFinder
 from smash.planners.precedence.dive import dive
+from smash.planners.precedence.emptying import places_decide
 from smash.planners.precedence.graph import Floats, PrecedenceGraph, build_graph
 from smash.planners.precedence.hitting_set import MOST_COMPILE_SECONDS, STALL, STALL_ROUNDS
 from smash.planners.precedence.ranks import MOST_VERTICES, RankFinder
 from smash.planners.precedence.turns import turn_graph
-from smash.problem.certificate import ONE, PLACE_COST, Cases, Certificate, FirstPlace, Leaf, first_problems
+from smash.problem.certificate import PLACE_COST, Cases, Certificate, FirstPlace, Leaf, first_problems
+from smash.problem.certificate_places import ONE, PlacesProof
 from smash.problem.problem import Problem
 
 MOST_ROUNDS = 200
@@ -32,6 +35,8 @@ NEAR, LONGEST = 0.2, 8
 """Sets grow along rows that are exceeded by less, of no more blocks."""
 NOISE = (0.5, 1.5, 2.5)
 """How much chance decides about them, round after round: few inequalities are wanted here, each stands in the file."""
+CYCLES_SHARE = 0.25
+"""Of the time, for the cycles alone where a choice of places may prove more."""
 COMPILE_SHARE = 0.2
 """Of the time, to wait for the kernels that find them."""
 
@@ -39,25 +44,30 @@ Fixed = dict[int, int]
 """Choices that a case fixes: 1 taken, 0 not."""
 
 
-def certify(problem: Problem, deadline: float, known: Iterable[tuple[int, ...]] = ()) -> Certificate:
+def certify(
+    problem: Problem, deadline: float, known: Iterable[tuple[int, ...]] = (), *, cost: int | None = None
+) -> Certificate:
     """Prove as good a lower bound as the time allows, and return the proof.
 
     Args:
         problem: a plain, feasible one.
         deadline: when to stop, in seconds of `time.perf_counter`; the certificate then proves what it can.
         known: cycles found before (`HittingSet.cycles`), to start from; none of a full hand's.
+        cost: of a plan that is known; no more than that is proven by a choice of places, where that is part of it.
     """
     part = _Part([], [], Leaf([]), 0)
     firsts: list[FirstPlace] = []
     if problem.instance.hand is None:
-        part = _proof(problem, deadline, known)
+        part = _proof(problem, deadline, known, cost)
         bound = part.bound
     else:
         rests = first_problems(problem.instance, problem.options)
         for number, (place, rest) in enumerate(rests.items()):
             until = perf_counter() + max(0.0, deadline - perf_counter()) / (len(rests) - number)
-            of_rest = _proof(Problem(rest, problem.options), until, ())
-            firsts.append(FirstPlace(place, of_rest.bound, of_rest.cycles, of_rest.proof, of_rest.ranks))
+            of_rest = _proof(Problem(rest, problem.options), until, (), None if cost is None else cost - PLACE_COST)
+            firsts.append(
+                FirstPlace(place, of_rest.bound, of_rest.cycles, of_rest.proof, of_rest.ranks, of_rest.places)
+            )
         bound = PLACE_COST + min(first.bound for first in firsts)
     return Certificate(
         format="smash-certificate/1",
@@ -70,20 +80,32 @@ def certify(problem: Problem, deadline: float, known: Iterable[tuple[int, ...]] 
         note="the time ran out before more was proven" if perf_counter() > deadline else "",
         first_places=firsts,
         ranks=part.ranks,
+        places=part.places,
     )
 
 
 class _Part(NamedTuple):
-    """A proof for an empty hand: the cycles and ranks that it uses, the proof, and its bound."""
+    """A proof for an empty hand: the cycles and ranks that it uses, the proof, its bound, and what stands for them."""
 
     cycles: list[list[str]]
     ranks: list[list[str]]
     proof: Leaf | Cases
     bound: int
+    places: PlacesProof | None = None
 
 
-def _proof(problem: Problem, deadline: float, known: Iterable[tuple[int, ...]]) -> _Part:
-    """Return a proof for an empty hand."""
+def _proof(problem: Problem, deadline: float, known: Iterable[tuple[int, ...]], cost: int | None) -> _Part:
+    """Return a proof for an empty hand, one that chooses places where that proves more."""
+    if not places_decide(problem):
+        return _plain_proof(problem, deadline, known)
+    now = perf_counter()
+    plain = _plain_proof(problem, now + CYCLES_SHARE * (deadline - now), known)
+    chosen = certify_places(problem, deadline, plain.bound, cost)
+    return plain if chosen is None else _Part([], [], Leaf([]), chosen[1], chosen[0])
+
+
+def _plain_proof(problem: Problem, deadline: float, known: Iterable[tuple[int, ...]]) -> _Part:
+    """Return a proof by cycles and ranks alone."""
     prover = _Prover(build_graph(problem), deadline)
     for cycle in known:
         prover.add(cycle)

@@ -17,19 +17,20 @@ from __future__ import annotations
 
 import heapq
 import itertools
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 
 from smash.planners.precedence.clauses import Cheapest, Clauses
 from smash.planners.precedence.graph import ASIDE_COST, MOVE_COST, TOPPLE_COST, Floats, PrecedenceGraph
+from smash.problem.certificate_places import PLACED, REMOVED, Key
 from smash.problem.model import OnGoal
 from smash.problem.problem import Problem
 from smash.problem.views.demands import Pile
 
 Event = tuple[str, str]
 """`(REMOVED, block)` or `(PLACED, block)`."""
-REMOVED, PLACED = "R", "P"
 MOST_PAIRS = 500_000
 """Larger models take longer to build than they are worth: about 80 locations that are all to be built on anew."""
 Edge = tuple[Event, tuple[int, ...], str | None]
@@ -90,9 +91,9 @@ def emptying_bound(
         on_places: called with what each solution keeps and builds where; returns the cost of the best plan known.
         maxsat: whether core-guided MaxSAT solves the model; None: where it is installed.
     """
-    if _pairs(problem) > MOST_PAIRS:
+    if too_large(problem):
         return 0
-    model = _Model(problem)
+    model = PlacesModel(problem)
     for cycle in cycles:
         model.hit([graph.blocks[block] for block in cycle])
     best = 0
@@ -114,18 +115,20 @@ def emptying_bound(
     return best
 
 
-def _pairs(problem: Problem) -> int:
-    """Return how many clauses keep towers and locations apart: the model grows as the third power of the locations."""
+def too_large(problem: Problem) -> bool:
+    """Whether too many clauses keep towers and locations apart: the model grows as the third power of the locations."""
     locations, towers = len(problem.posed.locations), len(bases(problem))
-    return towers * locations * (towers + locations) // 2
+    return towers * locations * (towers + locations) // 2 > MOST_PAIRS
 
 
-class _Model:
+class PlacesModel:
     """The clauses of one problem, and the relations from which its cycles come.
 
     Attributes:
         clauses: those known so far.
         base: what every plan costs beyond them.
+        names: per variable, that of the choice in a certificate (`smash.problem.certificate_places`).
+        under: per pair of towers whose order is chosen, bases of the lower and of the upper one, its variable.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -136,13 +139,15 @@ class _Model:
         self.clauses = Clauses()
         self.base = 0
         self._towers = goal.towers()
+        self._top = {tower[0]: tower[-1] for tower in self._towers}
         self._named = frozenset(block for tower in self._towers for block in tower)
         self._leaving = {block for pile in demands.leaving.values() for block in pile}
         self._forced = self._leaving | (self._named & set(instance.table))
         self._removed: dict[str, int] = {}
         self._frees: dict[str, tuple[int, ...]] = {}
         self._at: dict[tuple[str, str], int] = {}
-        self._under: dict[tuple[str, str], int] = {}
+        self.names: list[Key] = []
+        self.under: dict[tuple[str, str], int] = {}
         self._edges: dict[Event, list[Edge]] = {}
         self._forward: dict[str, Edge] = {}
         self.base += MOVE_COST * len(self._named & set(instance.table))
@@ -157,22 +162,27 @@ class _Model:
         options = self.problem.options
         falls = options.topple and location in self.problem.posed.stacks
         size = min(len(pile), options.max_topple or len(pile))
-        topples = [self.clauses.variable(TOPPLE_COST) for _ in range(len(pile) - size + 1)] if falls and pile else []
+        lows = range(1, len(pile) - size + 2) if falls and pile else ()
+        topples = [self._variable(("topple", location, low, low + size - 1), TOPPLE_COST) for low in lows]
         for height, block in enumerate(pile):
             cost = 0 if falls and block not in self._named else MOVE_COST
             if block in self._forced:
                 self.base += cost
             else:
-                self._removed[block] = self.clauses.variable(cost)
+                self._removed[block] = self._variable((REMOVED, block), cost)
             if topples:
                 self._frees[block] = tuple(topples[max(0, height - size + 1) : height + 1])
                 if block not in self._named:
                     self.clauses.ask([*self._frees[block], *self._unless(self._if_removed(block))])
             elif block in self._named:
-                self._frees[block] = (self.clauses.variable(ASIDE_COST),)
+                self._frees[block] = (self._variable(("aside", block), ASIDE_COST),)
         for under, upper in itertools.pairwise(pile):
             if upper in self._removed:
                 self.clauses.ask([*self._if_removed(upper), *self._unless(self._if_removed(under))])
+
+    def _variable(self, name: Key, cost: int = 0) -> int:
+        self.names.append(name)
+        return self.clauses.variable(cost)
 
     def _if_removed(self, block: str) -> tuple[int, ...]:
         """Return the literals under which a block leaves its pile: none where it does in any case."""
@@ -195,7 +205,7 @@ class _Model:
             if not self._moves(base):
                 continue
             for location in instance.locations:
-                self._at[base, location] = self.clauses.variable()
+                self._at[base, location] = self._variable(("at", base, location))
             places = [self._at[base, location] for location in instance.locations]
             self.clauses.ask([*places, *self._unless(self._if_removed(base))])
             for one, other in itertools.combinations(places, 2):
@@ -218,9 +228,9 @@ class _Model:
         if len(loose) ** 2 * len(locations) // 2 > MOST_PAIRS:
             return
         for one, other in itertools.combinations(loose, 2):
-            self._under[one, other] = self.clauses.variable()
-            self._under[other, one] = self.clauses.variable()
-            either = self._under[one, other], self._under[other, one]
+            self.under[one, other] = self._variable(("under", one, other))
+            self.under[other, one] = self._variable(("under", other, one))
+            either = self.under[one, other], self.under[other, one]
             self.clauses.ask(self._unless(either))
             for location in locations:
                 self.clauses.ask([-self._at[one, location], -self._at[other, location], *either])
@@ -287,9 +297,8 @@ class _Model:
 
     def _relate_order(self) -> None:
         """Say that of two towers at one location the lower is whole before the upper one is begun."""
-        top = {tower[0]: tower[-1] for tower in self._towers}
-        for (lower, upper), under in self._under.items():
-            self._edge((PLACED, top[lower]), (PLACED, upper), (under,))
+        for (lower, upper), under in self.under.items():
+            self._edge((PLACED, self._top[lower]), (PLACED, upper), (under,))
 
     def _edge(self, earlier: Event, later: Event, conditions: tuple[int, ...], mover: str | None = None) -> Edge:
         edge = later, conditions, mover
@@ -311,7 +320,7 @@ class _Model:
                 at.setdefault(base, location)
 
         def height(base: str) -> int:
-            return sum(self._under.get((lower, base)) in true for lower in at if at[lower] == at[base])
+            return sum(self.under.get((lower, base)) in true for lower in at if at[lower] == at[base])
 
         return Places(kept, {base: at[base] for base in sorted(at, key=height)})
 
@@ -340,10 +349,49 @@ class _Model:
                     freed.add(min(movers))
         return added
 
+    def violated(self, values: Floats, most: float, deadline: float) -> Iterable[Loop]:
+        """Yield short cycles whose clauses values fulfil to less than `most`, one a block or order of two towers.
+
+        Args:
+            values: per variable, from 0 to 1.
+            most: see above.
+            deadline: when to stop [s, `perf_counter`].
+        """
+        missing = [0.0, *(1.0 - values).tolist(), *reversed(values.tolist())]  # by literal, negative ones from the end
+        freed = {block: sum(values[literal - 1] for literal in literals) for block, literals in self._frees.items()}
+        weighed = {
+            event: [
+                (long, edge)
+                for edge in following
+                if (long := self._missing(edge, missing) + (freed[edge[2]] if edge[2] else 0.0)) < most
+            ]
+            for event, following in self._edges.items()
+        }
+        searches: list[tuple[Event, Event, float, Edge | None, frozenset[int]]] = [
+            ((REMOVED, block), (PLACED, block), freed[block], self._forward[block], frozenset())
+            for block in self._frees
+            if block in self._named
+        ]
+        for (lower, upper), literal in self.under.items():
+            searches.append(((PLACED, upper), (PLACED, self._top[lower]), missing[literal], None, frozenset({literal})))
+        for first, last, closing, without, literals in searches:
+            if perf_counter() > deadline:
+                return
+            if closing >= most or (found := _shortest(first, last, weighed, without, most - closing)) is None:
+                continue
+            way = found[1]
+            used = literals.union(*(edge[1] for _, edge in way))
+            yield Loop([event for event, _ in way] + [last], used)
+
+    @staticmethod
+    def _missing(edge: Edge, missing: Sequence[float]) -> float:
+        """Return how far the conditions of an edge are from holding, and a little for each edge."""
+        return 1e-5 + sum(missing[literal] for literal in edge[1])
+
     def _cut_off_orders(self, true: set[int]) -> int:
         """Add that of three towers none is below the next all round, where a solution says so; return how often."""
         above: dict[str, set[str]] = {}
-        for (lower, upper), under in self._under.items():
+        for (lower, upper), under in self.under.items():
             if under in true:
                 above.setdefault(lower, set()).add(upper)
         added = 0
@@ -351,7 +399,7 @@ class _Model:
             for upper in above.get(middle, ()):
                 if lower in above.get(upper, ()):
                     pairs = (lower, middle), (middle, upper), (upper, lower)
-                    added += self.clauses.ask(self._unless(self._under[pair] for pair in pairs))
+                    added += self.clauses.ask(self._unless(self.under[pair] for pair in pairs))
         return added
 
     def _cycles_left(
@@ -359,50 +407,69 @@ class _Model:
     ) -> list[tuple[list[int], list[str]]]:
         """Return a short cycle through each block that is not freed, as clauses, with the blocks that move directly."""
         found = []
+        weighed = {
+            event: [
+                (len(edge[1]) + (edge[2] is not None), edge)
+                for edge in following
+                if edge[2] is None or edge[2] not in freed
+            ]
+            for event, following in edges.items()
+        }
         for block in self._frees:
             if perf_counter() > deadline:
                 break
             if block in freed or block not in self._named or not self._is_removed(block, true):
                 continue
-            way = _shortest((REMOVED, block), (PLACED, block), edges, freed, self._forward[block])
-            if way is not None:
-                conditions, movers = way
-                movers = [block, *movers]
+            found_way = _shortest((REMOVED, block), (PLACED, block), weighed, self._forward[block], math.inf)
+            if found_way is not None:
+                edges_used = [edge for _, edge in found_way[1]]
+                conditions = [literal for _, literals, _ in edges_used for literal in literals]
+                movers = [block, *(mover for _, _, mover in edges_used if mover is not None)]
                 clause = [*self._unless(conditions), *(literal for one in movers for literal in self._frees[one])]
                 found.append((clause, movers))
         return found
 
 
+@dataclass(frozen=True, slots=True)
+class Loop:
+    """A cycle of events, each before the next, and the conditions of that as literals."""
+
+    events: list[Event]
+    literals: frozenset[int]
+
+
 def _shortest(
-    first: Event, last: Event, edges: Mapping[Event, list[Edge]], freed: set[str], without: Edge
-) -> tuple[list[int], list[str]] | None:
-    """Return conditions and directly moving blocks of a way with few of both, or None; `without` one edge."""
+    first: Event, last: Event, edges: Mapping[Event, Sequence[tuple[float, Edge]]], without: Edge | None, most: float
+) -> tuple[float, list[tuple[Event, Edge]]] | None:
+    """Return the length and the edges, with the events that they begin at, of a shortest way; None: `most` or longer.
+
+    Args:
+        first: where it begins.
+        last: where it ends.
+        edges: with their lengths, by the earlier event.
+        without: one that is not used.
+        most: how long it must not be.
+    """
     came: dict[Event, tuple[Event, Edge]] = {}
-    length = {first: 0}
-    waiting = [(0, first)]
+    length = {first: 0.0}
+    waiting = [(0.0, first)]
     while waiting:
-        steps, event = heapq.heappop(waiting)
+        so_far, event = heapq.heappop(waiting)
         if event == last:
             break
-        if steps > length[event]:
+        if so_far > length[event]:
             continue
-        for edge in edges.get(event, ()):
-            later, conditions, mover = edge
-            if edge is without or (mover is not None and mover in freed):
-                continue
-            reached = steps + len(conditions) + (mover is not None)
-            if reached < length.get(later, reached + 1):
-                length[later] = reached
-                came[later] = (event, edge)
-                heapq.heappush(waiting, (reached, later))
+        for long, edge in edges.get(event, ()):
+            reached = so_far + long
+            if edge is not without and reached < min(most, length.get(edge[0], math.inf)):
+                length[edge[0]] = reached
+                came[edge[0]] = (event, edge)
+                heapq.heappush(waiting, (reached, edge[0]))
     if last not in came:
         return None
-    conditions_of: list[int] = []
-    movers: list[str] = []
+    way: list[tuple[Event, Edge]] = []
     event = last
     while event != first:
-        event, (_, conditions, mover) = came[event]
-        conditions_of.extend(conditions)
-        if mover is not None:
-            movers.append(mover)
-    return conditions_of, movers
+        event, edge = came[event]
+        way.append((event, edge))
+    return length[last], way[::-1]

@@ -21,7 +21,8 @@ from tests.strategies import instances, plan_options
 def test_a_certificate_proves_the_base_and_the_cheapest_hitting_set(instance, options):
     graph = build_graph(Problem(instance, options))
     certificate = certify(Problem(instance, options), math.inf)
-    assert certificate.bound == graph.base_cost + cheapest_hitting_cost(graph)
+    by_cycles = graph.base_cost + cheapest_hitting_cost(graph)
+    assert certificate.bound == by_cycles or (certificate.places is not None and certificate.bound > by_cycles)
     assert proven_bound(instance, options, certificate) == certificate.bound
 
 

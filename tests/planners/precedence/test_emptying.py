@@ -107,8 +107,8 @@ def test_the_towers_of_a_solution_are_built_in_its_order():
 
 
 def test_no_three_towers_are_each_below_the_next():
-    model = emptying._Model(three_towers())
-    round_about = {model._under[pair] for pair in (("b", "d"), ("d", "f"), ("f", "b"))}
+    model = emptying.PlacesModel(three_towers())
+    round_about = {model.under[pair] for pair in (("b", "d"), ("d", "f"), ("f", "b"))}
     assert model._cut_off_orders(round_about) == 1
     assert model._cut_off_orders(round_about) == 0
     assert tuple(sorted(-literal for literal in round_about)) in model.clauses.asked
@@ -116,7 +116,7 @@ def test_no_three_towers_are_each_below_the_next():
 
 def test_where_too_many_pairs_would_have_to_be_kept_apart_their_order_is_left_open(monkeypatch):
     monkeypatch.setattr(emptying, "MOST_PAIRS", 3)
-    assert not emptying._Model(three_towers())._under
+    assert not emptying.PlacesModel(three_towers()).under
 
 
 @needs_maxsat
