@@ -28,8 +28,8 @@ from smash.problem.problem import Problem
 
 MOST_WAITS = 4
 """Of one block that are told apart: the model grows with the third power of them."""
-MOST_CLAUSES = 2_000_000
-"""Larger models take longer to build than they are worth: about 200 transfers."""
+MOST_CLAUSES = 2_500_000
+"""Larger models take longer to build than they are worth: about 190 transfers."""
 CLAUSE_SECONDS = 6e-6
 """To build a clause and hand it to the solver, which nobody can interrupt."""
 
