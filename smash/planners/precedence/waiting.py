@@ -32,6 +32,8 @@ MOST_CLAUSES = 2_500_000
 """Larger models take longer to build than they are worth: about 190 transfers."""
 CLAUSE_SECONDS = 6e-6
 """To build a clause and hand it to the solver, which nobody can interrupt."""
+HANDING = 2.5
+"""How often as long as building the clauses it takes to hand them over, whatever else the machine does."""
 
 
 def waits_decide(problem: Problem) -> bool:
@@ -70,11 +72,15 @@ def waiting_bound(
 
     for waits in range(1, MOST_WAITS + 1):
         size = _size(problem, waits)
-        if size > MOST_CLAUSES or perf_counter() + CLAUSE_SECONDS * size > deadline:
+        began = perf_counter()
+        if size > MOST_CLAUSES or began + CLAUSE_SECONDS * size > deadline:
             break
         model = _Model(problem, waits)
         base = model.base
         tell(0)
+        built = perf_counter()
+        if built + HANDING * (built - began) > deadline:
+            break
         solver = Cheapest(model.clauses, tell, threads, maxsat)
         values = solver.solve(deadline)
         solver.close()
