@@ -64,9 +64,9 @@ def test_no_plan_is_cheaper_by_maxsat(instance):
 
 @needs_maxsat
 @pytest.mark.slow
-@settings(max_examples=3000, deadline=None)
-@given(instances(min_blocks=3, max_blocks=6, kinds=("stacks", "positions")))
-def test_no_plan_of_thousands_of_problems_is_cheaper(instance):
+@settings(max_examples=500, deadline=None)
+@given(instances(min_blocks=3, max_blocks=5, kinds=("stacks", "positions")))
+def test_no_plan_of_hundreds_of_larger_problems_is_cheaper(instance):
     agrees_with_search(takes(instance), maxsat=True)
 
 
