@@ -10,6 +10,7 @@ from smash.planners.precedence.emptying import Places, emptying_bound, places_de
 from smash.planners.precedence.graph import PrecedenceGraph, build_graph
 from smash.planners.precedence.hitting_set import HittingSet, HittingSetSolver
 from smash.planners.precedence.schedule import Scheduler, chosen_of
+from smash.planners.precedence.waiting import waiting_bound, waits_decide
 from smash.problem.model import Action
 from smash.problem.problem import Problem
 from smash.problem.views.demands import demands_of
@@ -19,7 +20,7 @@ ORIGIN = "precedence"
 SHORT = 0.2
 """Seconds that any schedule may take."""
 CYCLES_SHARE = 0.5
-"""Of the time, for the cycles alone where it also matters which piles are emptied and which tower is built where."""
+"""Of the time, for the cycles alone where it also matters which piles are emptied, or where blocks wait."""
 PLACES_SHARE, PLACES_SECONDS = 0.05, 1.0
 """Of the time left, and the least, for the choices that go with the piles and places of a solution."""
 RESERVE = 3.0
@@ -78,22 +79,24 @@ def precedence_bound(
     solver = HittingSetSolver(graph, threads, lambda bound: tell(graph.base_cost + bound))
     plans.offer(solver.start(deadline), 0.1)
     placing = places_decide(problem)
-    until = perf_counter() + CYCLES_SHARE * (deadline - perf_counter()) if placing else deadline - plans.reserve
+    waiting = waits_decide(problem)
+    shared = placing or waiting
+    until = perf_counter() + CYCLES_SHARE * (deadline - perf_counter()) if shared else deadline - plans.reserve
     found = solver.solve(until, plans.offer)
     plans.offer(found.chosen, 1.0)
     relaxed = graph.base_cost + sum(graph.choices[choice].cost for choice in found.chosen)
     bound = graph.base_cost + found.bound
-    if (plans.best is None or len(plans.best) > bound) and placing:
+    if shared and (plans.best is None or len(plans.best) > bound):
         known = bound
-        joined = emptying_bound(
-            problem,
-            graph,
-            found.cycles,
-            deadline,
-            lambda better: tell(better) if better > known else None,
-            threads,
-            plans.offer_places,
-        )
+
+        def raise_bound(better: int) -> None:
+            if better > known:
+                tell(better)
+
+        if placing:
+            joined = emptying_bound(problem, graph, found.cycles, deadline, raise_bound, threads, plans.offer_places)
+        else:
+            joined = waiting_bound(problem, deadline, raise_bound, threads, plans.take)
         bound = max(bound, joined)
     return PrecedenceBound(bound, relaxed, plans.best, graph, found)
 
@@ -156,10 +159,15 @@ class _Plans:
         if actions is None and self.best is None and self.on_no_plan is not None:
             self.on_no_plan()
             self.on_no_plan = None
-        if actions is not None and (self.best is None or len(actions) < len(self.best)):
-            self.best = actions
+        if actions is not None:
+            self.take(actions)
+
+    def take(self, actions: Sequence[Action]) -> None:
+        """Take up a plan where it is better than the best one."""
+        if self.best is None or len(actions) < len(self.best):
+            self.best = tuple(actions)
             if self.on_plan is not None:
-                self.on_plan(actions)
+                self.on_plan(self.best)
 
     def _accepted(self, actions: Sequence[Action]) -> bool:
         """Whether the law takes a plan: where a block rests for good is not all in the graph for every goal."""
