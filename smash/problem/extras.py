@@ -19,7 +19,6 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "scip": ("pyscipopt",),
     "clingo": ("clingo",),
     "didp": ("didppy",),
-    "maxsat": ("pysat",),
     "docs": ("mkdocs", "material", "mkdocstrings"),
     "gym": ("gymnasium",),
     "ros": ("mcap", "mcap_ros2"),

@@ -11,8 +11,6 @@ from smash.problem.extras import ENGINES, EXECUTION, EXTRAS, TABLES, MissingExtr
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-CALLED = {"pysat": "python_sat"}
-"""Modules that are not called as what brings them."""
 
 
 def test_every_extra_is_one_of_the_package():
@@ -23,7 +21,7 @@ def test_every_extra_is_one_of_the_package():
 def test_the_first_module_of_an_extra_comes_with_it(extra):
     lines = PROJECT["optional-dependencies"][extra]
     names = {line.split(">")[0].split("[")[0].strip().replace("-", "_") for line in lines}
-    assert CALLED.get(EXTRAS[extra][0], EXTRAS[extra][0]) in names
+    assert EXTRAS[extra][0] in names
 
 
 def test_what_is_asked_for_at_once_comes_with_one_extra():

@@ -1,4 +1,4 @@
-"""Choices of the least cost that fulfil clauses: by core-guided MaxSAT where the extra `maxsat` is there, else HiGHS.
+"""Choices of the least cost that fulfil clauses: by core-guided MaxSAT, or by HiGHS.
 
 A literal is a variable's number, from 1 on, negative where the variable must be false; a clause asks for one of its
 literals. Variables have costs, which count where they are true.
@@ -17,8 +17,6 @@ import numpy as np
 from smash.planners.milp.arrays import MilpBuilder, OutOfTime
 from smash.planners.milp.solvers import highs
 from smash.planners.precedence.graph import Floats
-from smash.planners.precedence.hitting_set import MAXSAT_MODULE
-from smash.problem.extras import is_there
 
 if TYPE_CHECKING:
     from smash.planners.precedence.maxsat import MaxSat
@@ -60,11 +58,11 @@ class Cheapest:
         clauses: those known at first; further ones are looked for at each `solve`.
         on_bound: called at once with every better bound on the cost; says whether to go on.
         threads: HiGHS' threads.
-        maxsat: whether core-guided MaxSAT solves them; None: where it is installed.
+        maxsat: whether core-guided MaxSAT solves them, or HiGHS.
     """
 
     def __init__(
-        self, clauses: Clauses, on_bound: Callable[[int], bool], threads: int = 1, maxsat: bool | None = None
+        self, clauses: Clauses, on_bound: Callable[[int], bool], threads: int = 1, maxsat: bool = True
     ) -> None:
         self._clauses = clauses
         self._on_bound = on_bound
@@ -73,7 +71,7 @@ class Cheapest:
         self._sent = 0
         self._core_guided: MaxSat | None = None
         self._unit = math.gcd(*clauses.costs) or 1
-        if is_there(MAXSAT_MODULE) if maxsat is None else maxsat:
+        if maxsat:
             from smash.planners.precedence.maxsat import MaxSat
 
             weights = [cost // self._unit for cost in clauses.costs]

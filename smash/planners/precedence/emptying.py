@@ -77,7 +77,7 @@ def emptying_bound(
     on_bound: Callable[[int], object],
     threads: int = 1,
     on_places: Callable[[Places], int | None] | None = None,
-    maxsat: bool | None = None,
+    maxsat: bool = True,
 ) -> int:
     """Return a bound on the cost of every plan of an `on` goal; 0 where there was no time for one.
 
@@ -89,7 +89,7 @@ def emptying_bound(
         on_bound: called with every better bound at once.
         threads: the solver's threads.
         on_places: called with what each solution keeps and builds where; returns the cost of the best plan known.
-        maxsat: whether core-guided MaxSAT solves the model; None: where it is installed.
+        maxsat: whether core-guided MaxSAT solves the model, or HiGHS.
     """
     if too_large(problem):
         return 0

@@ -1,9 +1,9 @@
 """The cheapest choices that hit every cycle: cuts on the LP relaxation, then on integer solutions.
 
 Rows are added as cycles are found violated. Where each block is put aside by itself the choices are a directed feedback
-vertex set; if a second does not settle that, an annealed set comes next, and then core-guided MaxSAT where the extra
-`maxsat` is installed and there are not too many blocks for it, rank inequalities and integer solves elsewhere. Where a
-topple frees several blocks there is no annealed set and no rank inequality; the rest is the same.
+vertex set; if a second does not settle that, an annealed set comes next, and then core-guided MaxSAT where
+there are not too many blocks for it, rank inequalities and integer solves elsewhere. Where a topple frees several
+blocks there is no annealed set and no rank inequality; the rest is the same.
 """
 
 from __future__ import annotations
@@ -22,15 +22,13 @@ from smash.planners.precedence.cycles import CycleFinder
 from smash.planners.precedence.dive import EventOrder, dive
 from smash.planners.precedence.graph import Floats, PrecedenceGraph
 from smash.planners.precedence.relaxation import Relaxation, Row
-from smash.problem.extras import is_there
 
 if TYPE_CHECKING:
     from smash.planners.precedence.ranks import RankFinder
     from smash.planners.precedence.turns import TurnGraph
 
 HIGHS, MAXSAT = "HiGHS", "RC2"
-"""What proves the bounds: the solver of linear and integer programs, or the one of the extra `maxsat`."""
-MAXSAT_MODULE = "pysat"
+"""What proves the bounds: the solver of linear and integer programs, or core-guided MaxSAT."""
 
 TOLERANCE = 1e-4
 """Of a bound, in units: what HiGHS may be wrong by where each reduced cost is wrong by as much as it allows (1e-7)."""
@@ -96,7 +94,7 @@ class HittingSetSolver:
         graph: the precedence graph.
         threads: HiGHS' threads.
         on_bound: called at once with every better bound.
-        prover: `HIGHS` or `MAXSAT`; None: the latter where it is installed and serves better.
+        prover: `HIGHS` or `MAXSAT`; None: the latter where it serves better.
     """
 
     def __init__(
@@ -107,7 +105,7 @@ class HittingSetSolver:
         prover: str | None = None,
     ) -> None:
         self.graph = graph
-        self._prover = prover or (MAXSAT if is_there(MAXSAT_MODULE) else HIGHS)
+        self._prover = prover or MAXSAT
         self._most_counted = math.inf if prover else MOST_COUNTED
         self._on_bound = on_bound
         self.finder = CycleFinder(graph)

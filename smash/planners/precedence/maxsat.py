@@ -1,4 +1,4 @@
-"""The cheapest choices that hit every cycle, by core-guided MaxSAT (the extra `maxsat`).
+"""The cheapest choices that hit every cycle, by core-guided MaxSAT.
 
 RC2 (A. Ignatiev, A. Morgado and J. Marques-Silva, JSAT 2019) of python-sat: a clause a cycle, a soft clause a choice;
 each unsatisfiable core raises the bound, which holds whatever cycles are still unknown. Where the choices are blocks

@@ -7,7 +7,6 @@ from typing import ClassVar
 
 from smash.planners.greedy import greedy_method
 from smash.planners.protocol import Method, MethodPlanner, Settings, SolveLog, left, plain
-from smash.problem.extras import is_there
 from smash.problem.problem import Problem
 
 GREEDY_SHARE = 0.1
@@ -30,10 +29,7 @@ class PrecedencePlanner(MethodPlanner):
 
     def prepare(self) -> None:
         """Load the solvers and the arrays, so that no import is counted as planning."""
-        from smash.planners.precedence import bound, hitting_set  # noqa: F401
-
-        if is_there(hitting_set.MAXSAT_MODULE):
-            from smash.planners.precedence import maxsat  # noqa: F401
+        from smash.planners.precedence import bound, hitting_set, maxsat  # noqa: F401
 
     def methods(self, problem: Problem, settings: Settings) -> Sequence[Method]:
         """Return the hitting set alone."""

@@ -49,7 +49,7 @@ def waiting_bound(
     on_bound: Callable[[int], object],
     threads: int = 1,
     on_plan: Callable[[Sequence[Action]], object] | None = None,
-    maxsat: bool | None = None,
+    maxsat: bool = True,
 ) -> int:
     """Return a bound on the cost of every plan without topple; 0 where there was no time for one.
 
@@ -59,7 +59,7 @@ def waiting_bound(
         on_bound: called with every better bound at once.
         threads: the solver's threads.
         on_plan: called with the plan that a solution is, which no other beats.
-        maxsat: whether core-guided MaxSAT solves the model; None: where it is installed.
+        maxsat: whether core-guided MaxSAT solves the model, or HiGHS.
     """
     best = 0
 

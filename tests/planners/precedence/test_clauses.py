@@ -7,10 +7,8 @@ import random
 import pytest
 
 from smash.planners.precedence.clauses import Cheapest, Clauses
-from smash.planners.precedence.hitting_set import MAXSAT_MODULE
-from smash.problem.extras import is_there
 
-SOLVERS = [False, pytest.param(True, marks=pytest.mark.skipif(not is_there(MAXSAT_MODULE), reason="no python-sat"))]
+SOLVERS = [False, True]
 
 
 def drawn(seed):

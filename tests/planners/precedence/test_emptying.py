@@ -8,16 +8,13 @@ from hypothesis import assume, given, settings
 from smash.planners.precedence import emptying
 from smash.planners.precedence.emptying import bases, emptying_bound, places_decide
 from smash.planners.precedence.graph import build_graph
-from smash.planners.precedence.hitting_set import MAXSAT_MODULE, HittingSetSolver
+from smash.planners.precedence.hitting_set import HittingSetSolver
 from smash.problem import OnGoal, PlanOptions, make_instance
-from smash.problem.extras import is_there
 from smash.problem.problem import Problem
 from smash.problem.views.demands import demands_of
 from tests.oracle import optimal_cost
 from tests.relations import related
 from tests.strategies import instances, plan_options
-
-needs_maxsat = pytest.mark.skipif(not is_there(MAXSAT_MODULE), reason="python-sat of the extra `maxsat` is not there")
 
 
 def bounds(problem, maxsat=False):
@@ -63,7 +60,7 @@ def test_a_second_bottom_has_the_lower_pile_emptied(options, cost):
     assert joined == cost == optimal_cost(instance, options)
 
 
-@pytest.mark.parametrize("maxsat", [False, pytest.param(True, marks=needs_maxsat)])
+@pytest.mark.parametrize("maxsat", [False, True])
 def test_what_leaves_a_location_is_in_the_way_of_the_tower_that_is_built_there(maxsat):
     """Wherever c and b go with one location free, one of them cannot move directly; no location is short, though."""
     goal = OnGoal({"a": "b"}, ("c",))
@@ -74,7 +71,7 @@ def test_what_leaves_a_location_is_in_the_way_of_the_tower_that_is_built_there(m
     assert optimal_cost(instance, problem.options) == 7
 
 
-@pytest.mark.parametrize("maxsat", [False, pytest.param(True, marks=needs_maxsat)])
+@pytest.mark.parametrize("maxsat", [False, True])
 def test_of_two_towers_at_one_location_one_is_whole_before_the_other_is_begun(maxsat):
     """Neither c on d nor a on b has to be at a bottom, and on two locations neither can wait for the other."""
     goal = OnGoal({"c": "d", "a": "b"})
@@ -119,7 +116,6 @@ def test_where_too_many_pairs_would_have_to_be_kept_apart_their_order_is_left_op
     assert not emptying.PlacesModel(three_towers()).under
 
 
-@needs_maxsat
 @settings(max_examples=60, deadline=None)
 @given(instances(max_blocks=4, kinds=("on",)), plan_options())
 def test_both_solvers_prove_the_same(instance, options):

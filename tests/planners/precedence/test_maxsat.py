@@ -6,6 +6,7 @@ import random
 from time import perf_counter
 
 import pytest
+from pysat.solvers import Solver
 
 from smash.planners.precedence import hitting_set, maxsat
 from smash.planners.precedence.graph import build_graph
@@ -15,11 +16,6 @@ from smash.problem.problem import Problem
 from smash.problem.sets.open_instances import Shape, draw_instance
 from tests.arrangements import wide
 from tests.planners.precedence.events import hits_all
-
-pytest.importorskip("pysat", reason="python-sat of the extra `maxsat` is not installed")
-
-from pysat.solvers import Solver
-
 from tests.planners.precedence.maxsat import fewest_aside
 
 

@@ -7,15 +7,13 @@ import pytest
 
 from smash.planners.precedence import hitting_set
 from smash.planners.precedence.graph import build_graph
-from smash.planners.precedence.hitting_set import HIGHS, MAXSAT, MAXSAT_MODULE, HittingSetSolver
+from smash.planners.precedence.hitting_set import HIGHS, MAXSAT, HittingSetSolver
 from smash.problem import PlanOptions
-from smash.problem.extras import is_there
 from smash.problem.problem import Problem
 from tests.arrangements import wide
 from tests.planners.precedence.events import cheapest_hitting_cost, hits_all
 
-NO_MAXSAT = pytest.mark.skipif(not is_there(MAXSAT_MODULE), reason="python-sat of the extra `maxsat` is not installed")
-PROVERS = [HIGHS, pytest.param(MAXSAT, marks=NO_MAXSAT)]
+PROVERS = [HIGHS, MAXSAT]
 
 
 @pytest.fixture
@@ -55,9 +53,8 @@ def test_a_gap_of_the_cycles_is_closed_by_rank_inequalities(kernels):
     assert hits_all(graph, found.chosen)
 
 
-@NO_MAXSAT
 @pytest.mark.usefixtures("at_once")
-def test_a_gap_of_the_cycles_is_closed_by_maxsat_where_it_is_installed(kernels):
+def test_a_gap_of_the_cycles_is_closed_by_maxsat(kernels):
     graph = build_graph(Problem(wide(80, 14, seed=4), PlanOptions(topple=False)))
     bounds = []
     solver = HittingSetSolver(graph, on_bound=bounds.append)
@@ -68,7 +65,6 @@ def test_a_gap_of_the_cycles_is_closed_by_maxsat_where_it_is_installed(kernels):
     assert hits_all(graph, found.chosen)
 
 
-@NO_MAXSAT
 @pytest.mark.usefixtures("at_once")
 def test_with_more_blocks_rank_inequalities_take_the_place_of_maxsat_unless_it_is_asked_for(kernels, monkeypatch):
     monkeypatch.setattr(hitting_set, "MOST_COUNTED", 10)
@@ -81,7 +77,6 @@ def test_with_more_blocks_rank_inequalities_take_the_place_of_maxsat_unless_it_i
     assert ranked.bound == counted.bound
 
 
-@NO_MAXSAT
 @pytest.mark.usefixtures("at_once")
 def test_maxsat_that_is_stopped_leaves_a_bound_that_holds(kernels, monkeypatch):
     from smash.planners.precedence import maxsat
@@ -98,7 +93,6 @@ def test_maxsat_that_is_stopped_leaves_a_bound_that_holds(kernels, monkeypatch):
     assert found.bound <= full <= stopped.cost(found.chosen)
 
 
-@NO_MAXSAT
 @pytest.mark.parametrize("seed", range(4))
 def test_short_cycles_are_all_cycles_of_two_and_three_without_a_shorter_one(seed):
     from smash.planners.precedence.maxsat import short_cycles
@@ -119,7 +113,6 @@ def test_short_cycles_are_all_cycles_of_two_and_three_without_a_shorter_one(seed
     assert len(found) == len(pairs) + len(triples)
 
 
-@NO_MAXSAT
 @pytest.mark.usefixtures("at_once")
 @pytest.mark.parametrize("most", [0, 7])
 def test_short_cycles_that_there_was_no_time_for_are_added_where_an_answer_leaves_them(most, kernels, monkeypatch):
@@ -131,7 +124,6 @@ def test_short_cycles_that_there_was_no_time_for_are_added_where_an_answer_leave
     assert hits_all(graph, found.chosen)
 
 
-@NO_MAXSAT
 @pytest.mark.usefixtures("at_once")
 def test_maxsat_begins_with_long_cycles_that_the_relaxation_did_not_ask_for(kernels, monkeypatch):
     from smash.planners.precedence import maxsat
@@ -151,7 +143,6 @@ def test_maxsat_begins_with_long_cycles_that_the_relaxation_did_not_ask_for(kern
     assert len(with_them) > len(without)
 
 
-@NO_MAXSAT
 def test_listing_short_cycles_ends_at_the_deadline(monkeypatch):
     from smash.planners.precedence import maxsat
     from smash.planners.precedence.turns import turn_graph

@@ -9,16 +9,14 @@ from hypothesis import assume, given, settings
 from smash.planners.precedence import waiting
 from smash.planners.precedence.bound import precedence_bound
 from smash.planners.precedence.graph import build_graph
-from smash.planners.precedence.hitting_set import MAXSAT_MODULE, HittingSetSolver
+from smash.planners.precedence.hitting_set import HittingSetSolver
 from smash.planners.precedence.waiting import waiting_bound, waits_decide
 from smash.problem import OnGoal, PlanOptions, PositionsGoal, StacksGoal, make_instance
-from smash.problem.extras import is_there
 from smash.problem.problem import Problem
 from tests.oracle import optimal_cost
 from tests.strategies import instances
 
-needs_maxsat = pytest.mark.skipif(not is_there(MAXSAT_MODULE), reason="python-sat of the extra `maxsat` is not there")
-SOLVERS = [False, pytest.param(True, marks=needs_maxsat)]
+SOLVERS = [False, True]
 PICK_AND_PLACE = PlanOptions(topple=False)
 
 
@@ -55,14 +53,12 @@ def test_no_plan_is_cheaper_and_it_is_no_weaker_than_the_cycles(instance):
     agrees_with_search(takes(instance), maxsat=False)
 
 
-@needs_maxsat
 @settings(max_examples=25, deadline=None)
 @given(instances(max_blocks=4, kinds=("stacks", "positions")))
 def test_no_plan_is_cheaper_by_maxsat(instance):
     agrees_with_search(takes(instance), maxsat=True)
 
 
-@needs_maxsat
 @pytest.mark.slow
 @settings(max_examples=500, deadline=None)
 @given(instances(min_blocks=3, max_blocks=5, kinds=("stacks", "positions")))
