@@ -11,13 +11,12 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from time import perf_counter, process_time
 
-import msgspec
-
 from smash.experiments.best_known.files import LIST, read_best_known
 from smash.experiments.best_known.standing import Entry, open_instances, options_of
 from smash.planners.precedence.certify import certify
 from smash.problem.certificate import Certificate, certificate_text, proven_bound
 from smash.problem.files.documents import write_text
+from smash.problem.files.typed import typed_json
 from smash.problem.problem import Problem
 
 
@@ -38,7 +37,7 @@ def rows(entries: Iterable[Entry], budget: float) -> Iterator[str]:
         began = process_time()
         text = certificate_text(certify(Problem(instance, options), perf_counter() + budget, cost=entry.cost))
         written = process_time()
-        certificate = msgspec.json.decode(text, type=Certificate)
+        certificate = typed_json(text, Certificate)
         bound = proven_bound(instance, options, certificate)
         seconds = f"{written - began:.1f} | {process_time() - written:.2f}"
         by = "cycles" if certificate.places is None else "places"
