@@ -38,12 +38,16 @@ Drawing = tuple[str, Callable[[], "Figure"]]
 """The hash of the data, and what draws them."""
 
 
-def ablation(results: Path) -> Drawing:
-    """Return the contracted gadget's heatmaps, cold, on the paper's multi-goal set."""
-    label, suite = "smash-layered cold", "multi-9"
-    read = readings([r for r in runs_of(results / "ablation") if (r.label, r.suite) == (label, suite)])
-    cells, matched = variant_cells(read), matched_cells(read)
-    return data_hash(cells, matched), lambda: planner_figure(label, suite, cells, matched)
+def ablation(folder: str, label: str) -> Callable[[Path], Drawing]:
+    """Return what draws the heatmaps of a label on the paper's multi-goal set, from the records of a folder."""
+    suite = "multi-9"
+
+    def drawing(results: Path) -> Drawing:
+        read = readings([r for r in runs_of(results / folder) if (r.label, r.suite) == (label, suite)])
+        cells, matched = variant_cells(read), matched_cells(read)
+        return data_hash(cells, matched), lambda: planner_figure(label, suite, cells, matched)
+
+    return drawing
 
 
 def scaling(results: Path) -> Drawing:
@@ -55,7 +59,11 @@ def scaling(results: Path) -> Drawing:
     return data_hash(cells), scaling_chart(cells, "proof_seconds").figure
 
 
-DRAWN = {"docs/figures/ablation-layered-cold.png": ablation, "docs/figures/scaling-proofs.png": scaling}
+DRAWN = {
+    "docs/figures/ablation-flow.png": ablation("ablation-full", "smash-flow cold (CP-SAT)"),
+    "docs/figures/ablation-layered-cold.png": ablation("ablation", "smash-layered cold"),
+    "docs/figures/scaling-proofs.png": scaling,
+}
 COPIED = {"docs/topple-map.png": "topple-map/map.png"}
 """Pictures that a stage has drawn itself."""
 

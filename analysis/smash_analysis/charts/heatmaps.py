@@ -27,6 +27,8 @@ The last serves what topple gains and what it saves alike: violet where topple i
 """
 FULL, COLUMN = 7.0, 3.4
 """Width of a figure over both columns of a paper, and over one [in]."""
+WIDE_CELLS = 7
+"""Budgets up to which a cell has room for words of full size."""
 
 
 def ratio_place(value: float, reach: float) -> float:
@@ -148,7 +150,8 @@ def _heatmap(
         few = not np.isnan(value) and count < FEWEST_UNITS
         if np.isnan(value):
             axis.add_patch(Rectangle((column - 0.5, row - 0.5), 1, 1, facecolor="#ececec", lw=0))
-            axis.text(column, row, empty, ha="center", va="center", fontsize=5.5, color="#444444", linespacing=0.9)
+            size = 5.5 if values.shape[1] <= WIDE_CELLS else 4.5
+            axis.text(column, row, empty, ha="center", va="center", fontsize=size, color="#444444", linespacing=0.9)
             continue
         paint = colormap(scale(value))
         if few:
@@ -157,7 +160,7 @@ def _heatmap(
             axis.add_patch(Rectangle(at, 1, 1, facecolor="none", edgecolor=pale, hatch="//////", linewidth=0))
         text = f"{words(value)}\nn={count:.0f}" if few else words(value)
         box = {"facecolor": paint, "edgecolor": "none", "pad": 0.4} if few else None
-        size = 5.5 if few else 6.5
+        size = (5.5 if few else 6.5) if values.shape[1] <= WIDE_CELLS else 5.0
         colour = ink(*paint[:3])
         axis.text(column, row, text, ha="center", va="center", fontsize=size, color=colour, bbox=box, linespacing=0.95)
 
