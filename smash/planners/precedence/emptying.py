@@ -117,8 +117,10 @@ def emptying_bound(
 
 def too_large(problem: Problem) -> bool:
     """Whether too many clauses keep towers and locations apart: the model grows as the third power of the locations."""
-    locations, towers = len(problem.posed.locations), len(bases(problem))
-    return towers * locations * (towers + locations) // 2 > MOST_PAIRS
+    goal = problem.posed.goal
+    assert isinstance(goal, OnGoal)
+    locations, towers, bottoms = len(problem.posed.locations), len(goal.towers()), len(bases(problem))
+    return locations * (towers * locations + bottoms**2) // 2 > MOST_PAIRS
 
 
 class PlacesModel:

@@ -95,9 +95,12 @@ def waiting_bound(
 
 
 def _size(problem: Problem, waits: int) -> int:
-    """Return about how many clauses the model has."""
+    """Return about how many clauses the model has; 0 where no block leaves a pile and none waits."""
     leaving = sum(map(len, problem.demands.leaving.values()))
-    transfers = leaving * (waits + 1)
+    if not leaving:
+        return 0
+    lying = len(problem.demands.placed.intersection(problem.posed.table))
+    transfers = leaving * (waits + 1) + lying
     order = transfers**3 // 3
     return order + len(problem.posed.locations) * (leaving * waits) ** 2
 

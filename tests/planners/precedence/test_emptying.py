@@ -116,6 +116,21 @@ def test_where_too_many_pairs_would_have_to_be_kept_apart_their_order_is_left_op
     assert not emptying.PlacesModel(three_towers()).under
 
 
+def pairs_exchanged(stacks):
+    """Return piles of two blocks, whose lower ones are to carry the next pile's upper one; no tower is at a bottom."""
+    piles = {f"s{number}": (f"a{number}", f"b{number}") for number in range(stacks)}
+    goal = OnGoal({f"b{number}": f"a{(number + 1) % stacks}" for number in range(stacks)})
+    blocks = [block for pile in piles.values() for block in pile]
+    return Problem(make_instance(piles, goal, name="x", blocks=blocks, stacks=[*piles]), PlanOptions())
+
+
+def test_towers_that_may_stand_on_anything_make_the_model_larger_too():
+    model = emptying.PlacesModel(pairs_exchanged(20))
+    assert len(model.clauses.asked) > 20 * 20 * 19 // 2
+    assert not emptying.too_large(pairs_exchanged(20))
+    assert emptying.too_large(pairs_exchanged(200))
+
+
 @settings(max_examples=60, deadline=None)
 @given(instances(max_blocks=4, kinds=("on",)), plan_options())
 def test_both_solvers_prove_the_same(instance, options):

@@ -114,6 +114,24 @@ def test_where_blocks_may_fall_or_piles_are_anywhere_another_model_says_more():
     assert not waits_decide(Problem(on, PICK_AND_PLACE))
 
 
+def swapped_below_the_table_region(lying):
+    """Return three blocks that change their piles, and many that are placed from the table region after them."""
+    fallen = [f"t{number}" for number in range(lying)]
+    goal = StacksGoal({"s1": ("c", "a", *fallen), "s2": ("b",)})
+    piles, blocks = {"s2": "a", "u1": "cb"}, [*"abc", *fallen]
+    instance = make_instance(piles, goal, name="x", blocks=blocks, stacks=["s1", "s2"], buffers=["u1"], table=fallen)
+    return Problem(instance, PICK_AND_PLACE)
+
+
+def test_what_is_placed_from_the_table_region_makes_the_model_larger():
+    few = swapped_below_the_table_region(40)
+    assert bound_and_plan(few, maxsat=True)[0] == 10 + 2 * 40
+    assert waits_decide(few)
+    model = waiting._Model(few, 1)
+    assert len(model.clauses.asked) <= 1.5 * waiting._size(few, 1)
+    assert not waits_decide(swapped_below_the_table_region(300))
+
+
 def test_no_model_is_begun_that_the_time_does_not_allow():
     told = []
     assert waiting_bound(swapped(), perf_counter(), told.append) == 0
